@@ -1,0 +1,98 @@
+// Everything a rheometer run needs, as plain data in SI units. Read from TOML by apps/jamscope/case_file; checked by
+// check_case (libdem/case/check_case.hpp).
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace dem {
+
+using Vec3 = Eigen::Vector3d;
+
+struct Material {
+  std::string name;
+  double density = 0;  // kg/m^3
+  double young = 0;    // Pa, Young's modulus
+  double poisson = 0;  // 1, Poisson's ratio
+};
+
+struct Interaction {
+  double restitution = 1;       // 1, of a damped Hertz impact without adhesion
+  double friction = 0;          // 1, Coulomb
+  double rolling_friction = 0;  // 1
+  double work_of_adhesion = 0;  // J/m^2, W of the pair (twice a surface energy)
+};
+
+// A bed of spheres, diameters uniform by number in [size_low, size_high] * mean_diameter, poured, settled, relaxed at the
+// true stiffness and cut at `depth`.
+struct Bed {
+  std::string material;
+  double mean_diameter = 0;  // m
+  double size_low = 0.8, size_high = 1.2;
+  double depth = 0;  // m, height of the cut above the vessel floor
+  std::uint64_t seed = 1;
+};
+
+struct Vessel {
+  std::string material;
+  double diameter = 0;  // m; a cylinder about +z with its flat floor at z = 0, open above
+};
+
+// Two arms, C2-symmetric about z; the section at radius r is a rectangle height x thickness whose plane is turned about the
+// radial axis by tip_twist * (r / tip radius)^twist_exponent; the tip surface is coaxial with the vessel (uniform gap) or cut flat.
+struct TwistedBlade {
+  double diameter = 0;           // m, twice the tip radius
+  double height = 6e-3;          // m, of the plate
+  double thickness = 1.5e-3;     // m
+  double tip_twist = 0.5235987755982988;  // rad, from the vertical
+  double twist_exponent = 1;
+  double shaft_diameter = 5e-3;  // m, 0 for none
+  double shaft_length = 0;       // m above the plate's mid plane; 0: up to where the bed cannot reach
+  enum class TipCut { cylindrical, flat } tip_cut = TipCut::cylindrical;
+};
+
+struct MeshFile {
+  std::string path;  // STL, ASCII or binary
+  double scale = 1;  // m per file unit
+};
+
+struct Blade {
+  std::string material;
+  std::variant<TwistedBlade, MeshFile> shape;
+  double start_height = 0;  // m, lowest point of the blade above the vessel floor at t = 0
+};
+
+// The blade turns about +z and moves along z: angular velocity omega = v cos(alpha) / R_tip (positive: counter-clockwise
+// seen from above), axial velocity u = v sin(alpha) (negative: downward).
+struct Motion {
+  double tip_speed = 0;    // m/s, along the helix
+  double helix_angle = 0;  // rad, negative: downward
+  bool clockwise = false;
+};
+
+struct Output {
+  double frame_interval = 0;       // s
+  double series_interval = 0;      // s
+  double checkpoint_interval = 0;  // s of simulated time
+};
+
+struct Case {
+  std::string name, description;
+  std::vector<Material> materials;
+  std::vector<std::vector<Interaction>> interactions;  // [M][M], symmetric, order of `materials`
+  Bed bed;
+  Vessel vessel;
+  Blade blade;
+  Motion motion;
+  double duration = 0;    // s
+  double step = 0;        // s
+  Vec3 gravity{0, 0, -9.81};  // m/s^2
+  Output output;
+};
+
+// Throws CaseError where no material has this name.
+std::size_t material_index(const Case& c, const std::string& name);
+
+}  // namespace dem

@@ -1,0 +1,51 @@
+// Where a sphere touches a triangle mesh: the local minima of the distance from its centre to the surface.
+//
+// A face counts where the centre projects into its interior; an edge where it is the nearest part of BOTH its faces; a
+// vertex where it is the nearest part of ALL its faces. So a sphere over two coplanar triangles has one touch, a sphere in a
+// concave corner two, a sphere beyond a convex edge one, and the touch moves continuously as the sphere rolls across
+// edges and vertices. The reference for the rule: it is the definition of an isolated minimum of a piecewise smooth function.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libdem/geometry/mesh.hpp"
+
+namespace dem {
+
+enum class MeshFeature : std::uint8_t { face = 0, edge = 1, vertex = 2 };
+
+struct MeshTouch {
+  MeshFeature feature;
+  std::uint32_t feature_id;  // triangle, unique edge or vertex number; (feature, feature_id) names the feature for history
+  std::uint32_t facet;       // the touched triangle; for edges and vertices the smallest adjacent one
+  Vec3 point;                // m, nearest point of the surface, body frame
+  Vec3 normal;               // unit, from the sphere's centre to `point`
+  double distance;           // m, centre to point
+};
+
+class MeshContactFinder {
+ public:
+  // The mesh must have passed validate_mesh.
+  explicit MeshContactFinder(TriangleMesh mesh);
+  ~MeshContactFinder();
+  MeshContactFinder(MeshContactFinder&&) noexcept;
+  MeshContactFinder& operator=(MeshContactFinder&&) noexcept;
+
+  const TriangleMesh& mesh() const;
+
+  // Triangles whose distance to `centre` is at most `reach` (a superset is allowed), ascending. Appends to `out`.
+  void candidate_triangles(const Vec3& centre, double reach, std::vector<std::uint32_t>& out) const;
+
+  // Touches with distance <= reach among `candidates`, which must contain every triangle within `reach`. Sorted by
+  // (feature, feature_id). Clears `out` first. Safe to call from several threads; allocates only when `out` must grow.
+  void touches(const Vec3& centre, double reach, std::span<const std::uint32_t> candidates,
+               std::vector<MeshTouch>& out) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace dem

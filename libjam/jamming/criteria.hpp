@@ -1,0 +1,27 @@
+// Every threshold and choice of the analysis in one place.
+#pragma once
+#include <array>
+#include <vector>
+
+namespace jam {
+
+// How the contacts of a particle add up to its compressive force.
+enum class CompressiveMeasure {
+  sum,     // sum of the repulsive normal force magnitudes (EDEM's quantity, the paper's)
+  max,     // the largest of them
+  signed_  // sum of the signed normal forces, adhesion negative
+};
+
+struct Criteria {
+  CompressiveMeasure measure = CompressiveMeasure::sum;
+  double jam_force = 20.0;  // N; a particle is jammed when its compressive force is larger (paper, section 3.2)
+  // A contact belongs to a jam's load path when its normal force exceeds this share of jam_force.
+  double bridge_contact_share = 0.1;
+  // A particle sits in the gap when its centre is farther than tip radius - gap_margin * its diameter from the axis and
+  // within the blade's height +- its diameter (reference: physics.md claim 16 has gap_margin = 1/2).
+  double gap_margin = 0.5;
+  // Upper bounds of the survival-time classes, s; the last class is open (paper, Fig. 9 and Table 4).
+  std::vector<double> survival_classes{0.01, 0.02, 0.03, 0.04, 0.05};
+};
+
+}  // namespace jam
