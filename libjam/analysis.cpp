@@ -1,0 +1,204 @@
+#include "libjam/analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "libjam/errors.hpp"
+#include "libjam/events/events_csv.hpp"
+#include "libjam/events/streams.hpp"
+#include "libjam/graph/contact_graph.hpp"
+#include "libjam/jamming/check_criteria.hpp"
+#include "libjam/jamming/compressive_force.hpp"
+#include "libjam/jamming/gap.hpp"
+#include "libjam/jamming/jam_clusters.hpp"
+#include "libjam/metrics/coordination.hpp"
+#include "libjam/metrics/coordination_with_walls.hpp"
+#include "libjam/statistics/jam_counts.hpp"
+
+namespace jam {
+namespace {
+
+void check_frame(const Snapshot& snapshot, const RunInfo& info, const std::vector<FrameSummary>& before) {
+  std::ostringstream problem;
+  if (!std::isfinite(snapshot.time)) {
+    problem << "its time is not finite";
+  } else if (!before.empty() && snapshot.time <= before.back().time) {
+    problem << "its time " << snapshot.time << " s follows " << before.back().time << " s, expected increasing times";
+  } else if (snapshot.walls.size() != info.walls.size()) {
+    problem << "it has " << snapshot.walls.size() << " wall states, expected one for each of " << info.walls.size()
+            << " walls";
+  }
+  if (!problem.str().empty()) throw DataError("frame " + std::to_string(before.size()) + ": " + problem.str());
+}
+
+FrameSummary summarize(const ContactGraph& graph, const std::vector<double>& compressive_force,
+                       const std::vector<JammedParticle>& jammed, const std::vector<Cluster>& clusters) {
+  const Snapshot& snapshot = graph.snapshot();
+  FrameSummary row;
+  row.time = snapshot.time;
+  row.step = snapshot.step;
+  row.particles = static_cast<std::uint32_t>(graph.vertex_count());
+  row.particle_contacts = static_cast<std::uint32_t>(graph.edge_count());
+  row.wall_contacts = static_cast<std::uint32_t>(graph.wall_contact_count());
+  if (!compressive_force.empty()) {
+    row.coordination = coordination(graph);
+    row.coordination_with_walls = coordination_with_walls(graph);
+    const auto largest = std::max_element(compressive_force.begin(), compressive_force.end());
+    row.largest_compressive_force = *largest;
+    row.largest_particle = snapshot.particles.id[static_cast<std::size_t>(largest - compressive_force.begin())];
+    double sum = 0;
+    for (const double force : compressive_force) sum += force;
+    row.mean_compressive_force = sum / static_cast<double>(compressive_force.size());
+  }
+  row.jammed = static_cast<std::uint32_t>(jammed.size());
+  for (const JammedParticle& p : jammed) row.jammed_in_gap += p.in_gap;
+  for (const Cluster& cluster : clusters) {
+    if (!cluster.bridges) continue;
+    ++row.bridges;
+    row.largest_bridge = std::max(row.largest_bridge, static_cast<std::uint32_t>(cluster.members.size()));
+  }
+  return row;
+}
+
+JamFrame jam_frame(const Snapshot& snapshot, const std::vector<JammedParticle>& jammed,
+                   const std::vector<Cluster>& clusters) {
+  const Particles& particles = snapshot.particles;
+  const bool has_velocity = present(particles.velocity, particles.size());
+  std::vector<ParticleId> bridging;
+  for (const Cluster& cluster : clusters) {
+    if (cluster.bridges) bridging.insert(bridging.end(), cluster.members.begin(), cluster.members.end());
+  }
+  std::sort(bridging.begin(), bridging.end());
+  JamFrame frame;
+  frame.time = snapshot.time;
+  for (const JammedParticle& p : jammed) {
+    JammedSample sample;
+    sample.particle = particles.id[p.row];
+    sample.position = particles.position[p.row];
+    sample.velocity =
+        has_velocity ? particles.velocity[p.row] : Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());
+    sample.compressive_force = p.compressive_force;
+    sample.in_gap = p.in_gap;
+    sample.bridged = std::binary_search(bridging.begin(), bridging.end(), sample.particle);
+    frame.jammed.push_back(sample);
+  }
+  return frame;
+}
+
+bool any_blade_moves(const Snapshot& snapshot, const std::vector<Wall>& walls) {
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const WallState& state = snapshot.walls[w];
+    if (walls[w].role == WallRole::blade && (!state.velocity.isZero(0) || !state.angular_velocity.isZero(0)))
+      return true;
+  }
+  return false;
+}
+
+std::size_t recovered(const WallContacts& contacts) {
+  if (!present(contacts.flags, contacts.size())) return 0;
+  return static_cast<std::size_t>(std::count_if(contacts.flags.begin(), contacts.flags.end(),
+                                                [](std::uint8_t f) { return (f & contact_recovered) != 0; }));
+}
+
+}  // namespace
+
+std::string events_csv(const Analysis& analysis) {
+  return events_csv(analysis.events, analysis.tracks);
+}
+
+Pipeline::Pipeline(const RunInfo& info, const Criteria& criteria) : info_(info) {
+  check_criteria(criteria, info);
+  analysis_.criteria = criteria;
+}
+
+const FrameSummary& Pipeline::add(const Snapshot& snapshot) {
+  check_frame(snapshot, info_, analysis_.frames);
+  const ContactGraph graph(snapshot, info_.walls);
+  const auto frame = static_cast<std::uint32_t>(analysis_.frames.size());
+
+  const std::vector<double> compressive_force = compressive_forces(graph, analysis_.criteria.measure);
+  const std::vector<JammedParticle> jammed = jammed_particles(graph, compressive_force, info_, analysis_.criteria);
+  const std::vector<Cluster> clusters = jam_clusters(graph, jammed, analysis_.criteria, frame);
+
+  if (!jammed.empty() && (jam_frames_.empty() || jam_frames_.back().jammed.empty())) ++events_so_far_;
+  analysis_.frames.push_back(summarize(graph, compressive_force, jammed, clusters));
+  jam_frames_.push_back(jam_frame(snapshot, jammed, clusters));
+  analysis_.clusters.insert(analysis_.clusters.end(), clusters.begin(), clusters.end());
+
+  frame_power_.push_back(info_.wall_loads_known ? power_from_wall_loads(snapshot, info_.walls)
+                                                : power_from_wall_contacts(snapshot, info_.walls));
+  blade_moved_ = blade_moved_ || any_blade_moves(snapshot, info_.walls);
+  recovered_contacts_ += recovered(snapshot.pw);
+  tangential_forces_missing_ = tangential_forces_missing_ || !present(snapshot.pw.tangential_force, snapshot.pw.size());
+  return analysis_.frames.back();
+}
+
+Analysis Pipeline::finish(const Series& series) const {
+  Analysis a = analysis_;
+  const auto note = [&a](const auto&... parts) {
+    std::ostringstream text;
+    (text << ... << parts);
+    a.notes.push_back(text.str());
+  };
+
+  a.sampling_interval = sampling_interval(jam_frames_);
+  a.observed_time = static_cast<double>(jam_frames_.size()) * a.sampling_interval;
+  if (jam_frames_.size() < 2) note("fewer than two frames: no sampling interval, so no durations and no frequency");
+  std::size_t missing = 0;
+  for (std::size_t k = 1; k < jam_frames_.size(); ++k) missing += gap_before(jam_frames_, k, a.sampling_interval);
+  if (missing > 0) {
+    note("frames are missing in ", missing, " places (more than 1.5 sampling intervals apart): events are cut there");
+  }
+
+  a.events = global_events(jam_frames_, a.sampling_interval);
+  a.tracks = particle_tracks(jam_frames_, a.sampling_interval);
+  a.jammed_time = jammed_time(a.events);
+  a.jam_frequency = a.observed_time > 0 ? static_cast<double>(a.events.size()) / a.observed_time : 0.0;
+  a.survival_classes = survival_classes(a.events, a.criteria.survival_classes, a.sampling_interval, a.observed_time);
+  a.jammed_histogram = jammed_histogram(jam_frames_);
+  const auto open = std::count_if(a.events.begin(), a.events.end(),
+                                  [](const JamEvent& e) { return e.open_at_start || e.open_at_end; });
+  if (open > 0) note(open, " of ", a.events.size(), " events are cut off by the record and may have lasted longer");
+
+  if (gap_known(info_)) {
+    a.jammed_in_gap_share = jammed_in_gap_share(jam_frames_);
+  } else {
+    a.jammed_in_gap_share = std::numeric_limits<double>::quiet_NaN();
+    note("the gap between blade tip and vessel is not known: no particle is counted in it");
+  }
+  if (recovered_contacts_ > 0) {
+    note(recovered_contacts_, " contacts with walls are not in the source and were recovered from force balances");
+  }
+
+  if (series_has_power(series, info_.walls)) {
+    const double begin = a.frames.empty() ? 0.0 : a.frames.front().time;
+    a.flow_energy = flow_energy_from_series(series, info_.walls, begin);
+    return a;
+  }
+  const bool power_known =
+      std::all_of(frame_power_.begin(), frame_power_.end(), [](double p) { return std::isfinite(p); });
+  if (frame_power_.empty() || !power_known || !blade_moved_) {
+    a.flow_energy.source = "none";
+    const char* reason = "the velocity of the blade is zero in every frame";
+    if (!power_known) {
+      reason = info_.wall_loads_known ? "a force or torque on the blade is not finite"
+                                      : "contacts with the blade have neither point nor normal";
+    }
+    note("no flow energy: ", frame_power_.empty() ? "there are no frames" : reason);
+    return a;
+  }
+  std::vector<double> time;
+  for (const JamFrame& frame : jam_frames_) time.push_back(frame.time);
+  a.flow_energy = flow_energy_from_frames(time, frame_power_, info_.wall_loads_known ? "frames" : "contacts");
+  note(
+      "flow energy is integrated over the power at the frames, not over all steps: it misses what happens between "
+      "them");
+  if (!info_.wall_loads_known && tangential_forces_missing_) {
+    note("flow energy leaves out the tangential forces on the blade, which the source does not have");
+  }
+  return a;
+}
+
+}  // namespace jam

@@ -1,0 +1,17 @@
+// Events as a table that any tool reads.
+#pragma once
+#include <span>
+#include <string>
+
+#include "libjam/events/event.hpp"
+
+namespace jam {
+
+// One row per global event, then one per track; column `stream` is "global" or "particle". Units stand in the header.
+// Comma-separated, "." as decimal point in every locale, line ends "\n"; truth values are 0 and 1, members are joined
+// by
+// ";", an open bracket ends in "inf". Numbers have as many digits as give back the same double, so identical analyses
+// give identical bytes.
+std::string events_csv(std::span<const JamEvent> events, std::span<const Track> tracks);
+
+}  // namespace jam

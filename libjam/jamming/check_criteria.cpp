@@ -1,0 +1,50 @@
+#include "libjam/jamming/check_criteria.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "libjam/errors.hpp"
+
+namespace jam {
+namespace {
+
+template <class... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  throw CriteriaError(text.str());
+}
+
+void expect_not_negative(const char* name, double value) {
+  if (!std::isfinite(value) || value < 0) refuse("criteria: ", name, " = ", value, ", expected a number >= 0");
+}
+
+void expect_role(const RunInfo& info, WallRole role, const char* name) {
+  const auto has_role = [role](const Wall& wall) { return wall.role == role; };
+  if (std::any_of(info.walls.begin(), info.walls.end(), has_role)) return;
+  std::string walls;
+  for (const Wall& wall : info.walls) walls += (walls.empty() ? "" : ", ") + wall.name;
+  refuse("walls: none has the role ", name, " (walls: ", walls.empty() ? "none" : walls,
+         "), expected at least one, because jams bridge a blade and a vessel");
+}
+
+}  // namespace
+
+void check_criteria(const Criteria& criteria, const RunInfo& info) {
+  expect_not_negative("jam_force", criteria.jam_force);
+  expect_not_negative("bridge_contact_share", criteria.bridge_contact_share);
+  expect_not_negative("gap_margin", criteria.gap_margin);
+  double previous = 0;
+  for (std::size_t k = 0; k < criteria.survival_classes.size(); ++k) {
+    const double bound = criteria.survival_classes[k];
+    if (!std::isfinite(bound) || bound <= previous) {
+      refuse("criteria: survival_classes[", k, "] = ", bound, " s, expected more than ", previous, " s");
+    }
+    previous = bound;
+  }
+  expect_role(info, WallRole::blade, "blade");
+  expect_role(info, WallRole::vessel, "vessel");
+}
+
+}  // namespace jam
