@@ -25,8 +25,8 @@ struct Interaction {
   double work_of_adhesion = 0;  // J/m^2, W of the pair (twice a surface energy)
 };
 
-// A bed of spheres, diameters uniform by number in [size_low, size_high] * mean_diameter, poured, settled, relaxed at the
-// true stiffness and cut at `depth`.
+// A bed of spheres, diameters uniform by number in [size_low, size_high] * mean_diameter, poured, settled, relaxed at
+// the true stiffness and cut at `depth`.
 struct Bed {
   std::string material;
   double mean_diameter = 0;  // m
@@ -40,12 +40,13 @@ struct Vessel {
   double diameter = 0;  // m; a cylinder about +z with its flat floor at z = 0, open above
 };
 
-// Two arms, C2-symmetric about z; the section at radius r is a rectangle height x thickness whose plane is turned about the
-// radial axis by tip_twist * (r / tip radius)^twist_exponent; the tip surface is coaxial with the vessel (uniform gap) or cut flat.
+// Two arms, C2-symmetric about z; the section at radius r is a rectangle height x thickness whose plane is turned about
+// the radial axis by tip_twist * (r / tip radius)^twist_exponent; the tip surface is coaxial with the vessel (uniform
+// gap) or cut flat.
 struct TwistedBlade {
-  double diameter = 0;           // m, twice the tip radius
-  double height = 6e-3;          // m, of the plate
-  double thickness = 1.5e-3;     // m
+  double diameter = 0;                    // m, twice the tip radius
+  double height = 6e-3;                   // m, of the plate
+  double thickness = 1.5e-3;              // m
   double tip_twist = 0.5235987755982988;  // rad, from the vertical
   double twist_exponent = 1;
   double shaft_diameter = 5e-3;  // m, 0 for none
@@ -64,8 +65,8 @@ struct Blade {
   double start_height = 0;  // m, lowest point of the blade above the vessel floor at t = 0
 };
 
-// The blade turns about +z and moves along z: angular velocity omega = v cos(alpha) / R_tip (positive: counter-clockwise
-// seen from above), axial velocity u = v sin(alpha) (negative: downward).
+// The blade turns about +z and moves along z: angular velocity omega = v cos(alpha) / R_tip (positive:
+// counter-clockwise seen from above), axial velocity u = v sin(alpha) (negative: downward).
 struct Motion {
   double tip_speed = 0;    // m/s, along the helix
   double helix_angle = 0;  // rad, negative: downward
@@ -86,8 +87,8 @@ struct Case {
   Vessel vessel;
   Blade blade;
   Motion motion;
-  double duration = 0;    // s
-  double step = 0;        // s
+  double duration = 0;        // s
+  double step = 0;            // s
   Vec3 gravity{0, 0, -9.81};  // m/s^2
   Output output;
 };

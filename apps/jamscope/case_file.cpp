@@ -1,0 +1,304 @@
+#include "apps/jamscope/case_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "apps/jamscope/toml_reader.hpp"
+#include "libdem/case/check_case.hpp"
+#include "libdem/errors.hpp"
+
+namespace jamscope {
+namespace {
+
+using enum Need;
+
+void read_about(Section about, const std::string& path, dem::Case& c) {
+  c.name = std::filesystem::path(path).stem().string();
+  about.text("name", c.name, optional);
+  about.text("description", c.description, optional);
+  about.finish();
+}
+
+bool is_name(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+void read_materials(Section materials, Document& document, dem::Case& c) {
+  for (auto& [name, section] : materials.named_sections()) {
+    if (!is_name(name))
+      document.problem(section.path(), fmt::format("material names have only letters, digits and '_', got '{}'", name));
+    dem::Material m;
+    m.name = name;
+    section.quantity("density", dimension::density, m.density);
+    section.quantity("young", dimension::pressure, m.young);
+    section.number("poisson", m.poisson);
+    section.finish();
+    c.materials.push_back(m);
+  }
+  if (materials && c.materials.size() > 255) document.problem("material", "at most 255 materials are possible");
+  materials.finish();
+  c.interactions.assign(c.materials.size(), std::vector<dem::Interaction>(c.materials.size()));
+}
+
+std::vector<std::string> material_names(const dem::Case& c) {
+  std::vector<std::string> names;
+  for (const dem::Material& m : c.materials) names.push_back(m.name);
+  return names;
+}
+
+// The index, or -1 after reporting that the material is unknown.
+int find_material(const dem::Case& c, const std::string& name, const std::string& key, Document& document,
+                  bool at_key = false) {
+  const std::vector<std::string> names = material_names(c);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<int>(found - names.begin());
+  document.problem(key, fmt::format("unknown material '{}'{}", name, suggestion(name, names)), at_key);
+  return -1;
+}
+
+using Given = std::vector<std::vector<std::string>>;  // [M][M] name of the table that gave the pair, "" for none
+
+Given read_interactions(Section interactions, Document& document, dem::Case& c) {
+  Given given(c.materials.size(), std::vector<std::string>(c.materials.size()));
+  for (auto& [pair, section] : interactions.named_sections()) {
+    dem::Interaction i;
+    section.number("restitution", i.restitution);
+    section.number("friction", i.friction);
+    section.number("rolling_friction", i.rolling_friction, optional);
+    section.quantity("work_of_adhesion", dimension::surface_energy, i.work_of_adhesion, optional);
+    section.finish();
+
+    const std::size_t hyphen = pair.find('-');
+    if (hyphen == std::string::npos || pair.find('-', hyphen + 1) != std::string::npos) {
+      document.problem(section.path(), fmt::format("'{}' names no pair, expected [interaction.ONE-OTHER]", pair), true);
+      continue;
+    }
+    const int a = find_material(c, pair.substr(0, hyphen), section.path(), document, true);
+    const int b = find_material(c, pair.substr(hyphen + 1), section.path(), document, true);
+    if (a < 0 || b < 0) continue;
+    const auto row = static_cast<std::size_t>(a), column = static_cast<std::size_t>(b);
+    if (!given[row][column].empty()) {
+      document.problem(section.path(),
+                       fmt::format("[interaction.{}] was given before, as [interaction.{}]", pair, given[row][column]),
+                       true);
+      continue;
+    }
+    given[row][column] = given[column][row] = pair;
+    c.interactions[row][column] = c.interactions[column][row] = i;
+  }
+  interactions.finish();
+  return given;
+}
+
+void read_vessel(Section vessel, dem::Vessel& v) {
+  vessel.text("material", v.material);
+  vessel.quantity("diameter", dimension::length, v.diameter);
+  vessel.finish();
+}
+
+void read_blade(Section blade, const std::string& path, Document& document, dem::Blade& b) {
+  if (!blade) return;
+  blade.text("material", b.material);
+  blade.quantity("start_height", dimension::length, b.start_height);
+  std::string kind;
+  const std::vector<std::pair<std::string, std::string>> kinds{{"twisted", "twisted"}, {"stl", "stl"}};
+  if (!blade.choice("kind", kinds, kind)) {
+    // Which keys belong here is not known.
+    if (!document.has_problems()) blade.finish();
+    return;
+  }
+  if (kind == "twisted") {
+    dem::TwistedBlade t;
+    blade.quantity("diameter", dimension::length, t.diameter);
+    blade.quantity("height", dimension::length, t.height, optional);
+    blade.quantity("thickness", dimension::length, t.thickness, optional);
+    blade.quantity("tip_twist", dimension::angle, t.tip_twist, optional);
+    blade.number("twist_exponent", t.twist_exponent, optional);
+    blade.quantity("shaft_diameter", dimension::length, t.shaft_diameter, optional);
+    blade.quantity("shaft_length", dimension::length, t.shaft_length, optional);
+    using TipCut = dem::TwistedBlade::TipCut;
+    blade.choice("tip_cut", {{"cylindrical", TipCut::cylindrical}, {"flat", TipCut::flat}}, t.tip_cut, optional);
+    b.shape = t;
+  } else {
+    dem::MeshFile mesh;
+    std::string file, unit;
+    if (blade.text("file", file))
+      mesh.path = (std::filesystem::path(path).parent_path() / file).lexically_normal().string();
+    if (blade.text("file_unit", unit)) {
+      try {
+        mesh.scale = to_si("1 " + unit, dimension::length);
+      } catch (const UnitError&) {
+        document.problem("blade.file_unit",
+                         fmt::format("'file_unit' wants a unit of length, for example \"mm\"; got '{}'", unit));
+      }
+    }
+    b.shape = mesh;
+  }
+  blade.finish();
+}
+
+void read_motion(Section motion, dem::Motion& m) {
+  motion.quantity("tip_speed", dimension::speed, m.tip_speed);
+  motion.quantity("helix_angle", dimension::angle, m.helix_angle);
+  motion.choice("rotation", {{"clockwise", true}, {"counter-clockwise", false}}, m.clockwise);
+  motion.finish();
+}
+
+void read_bed(Section bed, dem::Bed& b) {
+  bed.text("material", b.material);
+  bed.quantity("mean_diameter", dimension::length, b.mean_diameter);
+  bed.number("size_low", b.size_low);
+  bed.number("size_high", b.size_high);
+  bed.quantity("depth", dimension::length, b.depth);
+  bed.whole_number("seed", b.seed, optional);
+  bed.finish();
+}
+
+void read_run(Section run, dem::Case& c) {
+  run.quantity("duration", dimension::time, c.duration);
+  run.quantity("step", dimension::time, c.step);
+  double gravity = -c.gravity.z();
+  if (run.quantity("gravity", dimension::acceleration, gravity, optional)) c.gravity = {0, 0, -gravity};
+  run.finish();
+}
+
+void read_output(Section output, dem::Output& o) {
+  output.quantity("frame_interval", dimension::time, o.frame_interval);
+  output.quantity("series_interval", dimension::time, o.series_interval);
+  output.quantity("checkpoint_interval", dimension::time, o.checkpoint_interval);
+  output.finish();
+}
+
+void read_analysis(Section analysis, Document& document, jam::Criteria& criteria) {
+  using Measure = jam::CompressiveMeasure;
+  analysis.choice("measure", {{"sum", Measure::sum}, {"max", Measure::max}, {"signed", Measure::signed_}},
+                  criteria.measure, optional);
+  analysis.quantity("jam_force", dimension::force, criteria.jam_force, optional);
+  analysis.number("bridge_contact_share", criteria.bridge_contact_share, optional);
+  analysis.number("gap_margin", criteria.gap_margin, optional);
+  analysis.quantities("survival_classes", dimension::time, criteria.survival_classes, optional);
+  analysis.finish();
+
+  const auto refuse = [&](const char* key, const std::string& message) {
+    document.problem(std::string("analysis.") + key, fmt::format("'{}' {}", key, message));
+  };
+  if (!(criteria.jam_force > 0)) refuse("jam_force", fmt::format("must be positive, got {} N", criteria.jam_force));
+  if (!(criteria.bridge_contact_share >= 0 && criteria.bridge_contact_share <= 1))
+    refuse("bridge_contact_share", fmt::format("must lie in [0, 1], got {}", criteria.bridge_contact_share));
+  if (!(criteria.gap_margin >= 0))
+    refuse("gap_margin", fmt::format("must not be negative, got {}", criteria.gap_margin));
+  double bound = 0;
+  for (const double next : criteria.survival_classes) {
+    if (!(next > bound)) {
+      refuse("survival_classes", fmt::format("must be positive and rising, got {} s after {} s", next, bound));
+      break;
+    }
+    bound = next;
+  }
+  if (criteria.survival_classes.empty()) refuse("survival_classes", "must hold at least one bound, got none");
+}
+
+// Grains touch grains, the vessel and the blade; other pairs never meet.
+void require_pairs(const dem::Case& c, const Given& given, Document& document) {
+  const auto index = [&](const std::string& material, const char* key) {
+    return material.empty() ? -1 : find_material(c, material, key, document);
+  };
+  const int grain = index(c.bed.material, "bed.material");
+  const std::pair<int, const char*> walls[] = {{grain, "grains"},
+                                               {index(c.vessel.material, "vessel.material"), "the vessel"},
+                                               {index(c.blade.material, "blade.material"), "the blade"}};
+  if (document.has_problems()) return;  // a pair may be missing only because its name is misspelt
+  std::vector<int> reported;
+  for (const auto& [other, what] : walls) {
+    if (grain < 0 || other < 0 || std::find(reported.begin(), reported.end(), other) != reported.end()) continue;
+    if (!given[static_cast<std::size_t>(grain)][static_cast<std::size_t>(other)].empty()) continue;
+    document.problem("interaction",
+                     fmt::format("missing table [interaction.{0}-{1}]: grains of {0} touch {2} of {1}", c.bed.material,
+                                 c.materials[static_cast<std::size_t>(other)].name, what));
+    reported.push_back(other);
+  }
+}
+
+// A pair may be written either way round in the file.
+std::string key_in_file(const std::string& key, const Given& given, const dem::Case& c) {
+  for (std::size_t a = 0; a < given.size(); ++a)
+    for (std::size_t b = a; b < given.size(); ++b) {
+      const std::string prefix = fmt::format("interaction.{}-{}.", c.materials[a].name, c.materials[b].name);
+      if (key.starts_with(prefix) && !given[a][b].empty())
+        return fmt::format("interaction.{}.{}", given[a][b], key.substr(prefix.size()));
+    }
+  return key;
+}
+
+std::string written_out(const Document& document) {
+  std::ostringstream out;
+  out << document.table() << '\n';
+  return out.str();
+}
+
+}  // namespace
+
+CaseFile read_case_text(std::string_view text, const std::string& path, const std::vector<std::string>& overrides) {
+  Document document(text, path, overrides);
+  CaseFile file;
+  file.path = path;
+  dem::Case& c = file.physics;
+
+  Section root = document.root();
+  read_about(root.section("case", optional), path, c);
+  read_materials(root.section("material"), document, c);
+  const Given given = read_interactions(root.section("interaction"), document, c);
+  read_vessel(root.section("vessel"), c.vessel);
+  read_blade(root.section("blade"), path, document, c.blade);
+  read_motion(root.section("motion"), c.motion);
+  read_bed(root.section("bed"), c.bed);
+  read_run(root.section("run"), c);
+  read_output(root.section("output"), c.output);
+  read_analysis(root.section("analysis", optional), document, file.criteria);
+  root.finish();
+  if (!c.materials.empty()) require_pairs(c, given, document);
+  document.throw_problems();
+
+  for (const dem::CaseProblem& p : dem::case_problems(c)) {
+    const std::string key = key_in_file(p.key, given, c);
+    const std::string message = fmt::format("'{}' {}", key.substr(key.rfind('.') + 1), p.message);
+    if (p.fatal)
+      document.problem(key, message);
+    else
+      file.warnings.push_back(document.place(key) + ": " + message);
+  }
+  document.throw_problems();
+  file.text = overrides.empty() ? std::string(text) : written_out(document);
+  return file;
+}
+
+CaseFile read_case_file(const std::string& path, const std::vector<std::string>& overrides) {
+  return read_case_text(read_text_file(path), path, overrides);
+}
+
+jam::Criteria read_criteria_text(std::string_view text, const std::string& path, const jam::Criteria& base,
+                                 const std::vector<std::string>& overrides) {
+  std::vector<std::string> full;
+  for (const std::string& override : overrides)
+    full.push_back(override.starts_with("analysis.") ? override : "analysis." + override);
+  Document document(text, path, full);
+  jam::Criteria criteria = base;
+  Section root = document.root();
+  read_analysis(root.section("analysis", optional), document, criteria);
+  root.finish();
+  document.throw_problems();
+  return criteria;
+}
+
+jam::Criteria read_criteria_file(const std::string& path, const jam::Criteria& base,
+                                 const std::vector<std::string>& overrides) {
+  return read_criteria_text(read_text_file(path), path, base, overrides);
+}
+
+}  // namespace jamscope
