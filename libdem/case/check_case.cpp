@@ -130,16 +130,16 @@ bool check_twisted_blade(const Case& c, const TwistedBlade& blade, Checker& chec
   return good;
 }
 
-void check_fit(const Case& c, const BladeExtent& extent, Checker& check) {
+void check_fit(const Case& c, double tip, Checker& check) {
   const double largest = c.bed.size_high * c.bed.mean_diameter;
-  if (extent.tip_radius >= c.vessel.diameter / 2) {
+  if (tip >= c.vessel.diameter / 2) {
     // A twisted blade has been told so in terms of its own diameter.
     if (std::holds_alternative<MeshFile>(c.blade.shape))
-      check.refuse("blade.file", "reaches " + text(extent.tip_radius) + " m from the axis, the vessel only " +
-                                     text(c.vessel.diameter / 2) + " m");
+      check.refuse("blade.file",
+                   "reaches " + text(tip) + " m from the axis, the vessel only " + text(c.vessel.diameter / 2) + " m");
     return;
   }
-  const Derived d = derive(c, extent);
+  const Derived d = derive(c, tip);
   const double lowest = std::min(c.blade.start_height, d.end_height);
   if (!(lowest > 0)) {
     const bool at_once = c.blade.start_height <= 0;
@@ -210,7 +210,7 @@ bool known_materials(const Case& c, Checker& check) {
 
 }  // namespace
 
-std::vector<CaseProblem> case_problems(const Case& c, const BladeExtent& extent) {
+std::vector<CaseProblem> case_problems(const Case& c, double tip) {
   Checker check;
   if (!known_materials(c, check)) return check.problems;  // nothing else can be worked out
   check_materials(c, check);
@@ -235,7 +235,7 @@ std::vector<CaseProblem> case_problems(const Case& c, const BladeExtent& extent)
   const bool grains = bed && std::none_of(check.problems.begin(), check.problems.end(), [](const CaseProblem& p) {
                         return p.fatal && p.key.starts_with("material.");
                       });
-  if (grains && blade && motion && duration && extent.tip_radius > 0) check_fit(c, extent, check);
+  if (grains && blade && motion && duration && tip > 0) check_fit(c, tip, check);
   if (grains && step) check_step(c, check);
   if (duration && step) {
     check_interval("run.duration", c.duration, c, check);

@@ -16,10 +16,10 @@ struct CaseProblem {
 };
 
 // Everything that is wrong with the case, in the order of the struct. No exception: a caller that knows where each key
-// came from can say so. extent: of the blade; for a mesh blade measure it, or leave it 0 and the fit is not looked at.
-std::vector<CaseProblem> case_problems(const Case& c, const BladeExtent& extent);
+// came from can say so. tip: tip radius, m; where it is 0 (a mesh that nobody measured) the fit is not looked at.
+std::vector<CaseProblem> case_problems(const Case& c, double tip);
 inline std::vector<CaseProblem> case_problems(const Case& c) {
-  return case_problems(c, blade_extent(c));
+  return case_problems(c, tip_radius(c));
 }
 
 // Throws CaseError with the first fatal problem; returns the others as text.

@@ -49,18 +49,12 @@ Squeeze squeeze(const Material& grain, const Material& wall_a, const Material& w
   return s;
 }
 
-BladeExtent blade_extent(const Case& c) {
-  BladeExtent e;
-  if (const auto* blade = std::get_if<TwistedBlade>(&c.blade.shape)) {
-    e.tip_radius = blade->diameter / 2;
-    // A rectangle h x t turned by beta is h cos(beta) + t sin(beta) high, most where tan(beta) = t/h.
-    const double beta = std::min(std::abs(blade->tip_twist), std::atan2(blade->thickness, blade->height));
-    e.height = blade->height * std::cos(beta) + blade->thickness * std::sin(beta);
-  }
-  return e;
+double tip_radius(const Case& c) {
+  const auto* const blade = std::get_if<TwistedBlade>(&c.blade.shape);
+  return blade ? blade->diameter / 2 : 0;
 }
 
-Derived derive(const Case& c, const BladeExtent& extent) {
+Derived derive(const Case& c, double tip) {
   Derived d;
   const Material& grain = c.materials[material_index(c, c.bed.material)];
   const Material& vessel = c.materials[material_index(c, c.vessel.material)];
@@ -69,11 +63,11 @@ Derived derive(const Case& c, const BladeExtent& extent) {
   const double adhesion = c.interactions[g][g].work_of_adhesion, gravity = c.gravity.norm();
 
   d.axial_velocity = c.motion.tip_speed * std::sin(c.motion.helix_angle);
-  d.angular_velocity = c.motion.tip_speed * std::cos(c.motion.helix_angle) / extent.tip_radius;
+  d.angular_velocity = c.motion.tip_speed * std::cos(c.motion.helix_angle) / tip;
   d.travel = std::abs(d.axial_velocity) * c.duration;
   d.turns = d.angular_velocity * c.duration / (2 * pi);
   d.end_height = c.blade.start_height + d.axial_velocity * c.duration;
-  d.gap = c.vessel.diameter / 2 - extent.tip_radius;
+  d.gap = c.vessel.diameter / 2 - tip;
 
   const double mean = c.bed.mean_diameter, a = c.bed.size_low, b = c.bed.size_high, radius = mean / 2;
   d.smallest_diameter = a * mean;

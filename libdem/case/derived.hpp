@@ -33,14 +33,8 @@ struct Squeeze {
 };
 Squeeze squeeze(const Material& grain, const Material& wall_a, const Material& wall_b, double diameter, double gap);
 
-// The part of the blade that matters here, relative to nothing but itself. A twisted blade's follows from its
-// parameters; that of a mesh must be measured (libdem/geometry).
-struct BladeExtent {
-  double tip_radius = 0;  // m, largest distance from the axis
-  double height = 0;      // m, of the plate along the axis
-};
-// Zeros for a mesh file.
-BladeExtent blade_extent(const Case& c);
+// Largest distance of the blade from its axis, m; 0 for a mesh file, whose vertices know (libdem/geometry).
+double tip_radius(const Case& c);
 
 struct Derived {
   // Motion [X, section 2].
@@ -79,10 +73,10 @@ struct Derived {
 };
 
 // Every number of the case must be finite; where one is out of range the numbers that depend on it mean nothing, but
-// nothing else happens. extent: measured, for a mesh blade.
-Derived derive(const Case& c, const BladeExtent& extent);
+// nothing else happens. tip: tip radius, m. Throws CaseError where bed, vessel or blade are of an unknown material.
+Derived derive(const Case& c, double tip);
 inline Derived derive(const Case& c) {
-  return derive(c, blade_extent(c));
+  return derive(c, tip_radius(c));
 }
 
 }  // namespace dem
