@@ -1,0 +1,47 @@
+// report.html: one page, readable from disk without network, that shows what an analysis found.
+//
+// The page is apps/report, built once by npm, checked in and compiled into the program; this file only fills in the
+// data.
+#pragma once
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "libjam/analysis.hpp"
+#include "libjam/snapshot/snapshot.hpp"
+
+namespace jamscope {
+
+// One line of the table of derived numbers, already written out: {"Bond number", "17.3", ""}.
+struct DerivedNumber {
+  std::string name, value, unit;
+};
+
+// What the page says about itself that neither the run nor its analysis knows. Empty or NaN: not shown.
+struct ReportContext {
+  std::string name, description;  // of the case; without a name the page calls itself "Jam analysis"
+  std::vector<DerivedNumber> derived;
+  std::vector<std::string> command_line;  // of the program that writes this report; RunInfo::argv is that of the run
+  std::string machine;                    // "2 x Intel Xeon ..., 2 threads"
+  std::string created_utc;                // of the report
+  double wall_seconds = std::numeric_limits<double>::quiet_NaN();
+  double particle_steps_per_second = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> warnings;  // for example SnapshotSource::warnings
+};
+
+// No page is larger than this, however long the run (bytes).
+inline constexpr std::size_t largest_report = 5'000'000;
+
+// The whole page. Curves of more rows than the page can hold are thinned to bins that keep minimum, mean and maximum,
+// so that no peak is lost, and the page says so; of too many events or tracks those with the largest peak force stay.
+// NaN and infinity become null. Any text may hold any bytes: invalid UTF-8 is replaced, markup is escaped.
+std::string report_html(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
+                        const ReportContext& context);
+
+// The data of the page alone, as the JSON text of its island (format "jamscope-report", schema 1). `rows` bounds every
+// curve.
+std::string report_json(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
+                        const ReportContext& context, std::size_t rows);
+
+}  // namespace jamscope

@@ -1,0 +1,59 @@
+// What a figure hands to the charts.
+import type { Column } from '../data';
+
+export type Colour = 'blue' | 'vermillion' | 'green' | 'orange' | 'purple' | 'grey';
+
+// One curve over time. `low` and `high` are the edges of a band; a band belongs to the curves of its own colour.
+export interface Curve {
+  label: string;
+  time: Column;
+  values: Column;
+  colour: Colour;
+  kind?: 'line' | 'steps' | 'dashes' | 'low' | 'high';
+}
+
+export interface TimePlot {
+  kind: 'time';
+  quantity: string; // name of the y axis, without its unit
+  unit: string;
+  curves: Curve[];
+  log?: 'offer' | 'first' | 'always'; // log axis: as an option, as the first choice, without choice
+  threshold?: { value: number; label: string };
+  fromZero?: boolean;
+}
+
+export interface Bar {
+  label: string;
+  value: number;
+  text: string;      // written above the bar
+  hover: string;
+  low?: number;      // ends of the error bar
+  high?: number;
+}
+
+export interface BarPlot {
+  kind: 'bars';
+  quantity: string;
+  unit: string;
+  across: string;    // name and unit of the x axis
+  bars: Bar[];
+  colour: Colour;
+  edges?: boolean;   // labels name the left edge of a bin instead of the bar
+  marks?: { at: number; label: string }[];  // vertical lines; 1.5 is the middle of the second bar
+}
+
+export interface TableView {
+  kind: 'table';
+  header: string[];
+  rows: string[][];
+}
+
+// Why there is nothing to show: data that is absent is explained, never drawn as zero.
+export interface Missing {
+  kind: 'missing';
+  why: string;
+}
+
+export type View = TimePlot | BarPlot | TableView | Missing;
+
+export const missing = (why: string): Missing => ({ kind: 'missing', why });

@@ -1,0 +1,93 @@
+// The data island that apps/jamscope/report.cpp writes (format "jamscope-report", schema 1). SI units; null is "not known".
+
+export type Column = (number | null)[];
+
+export interface FramesData {
+  rows: number; every: number; time: Column;
+  largest_force: Column; mean_force: Column; jammed: Column; jammed_in_gap: Column; bridges: Column;
+  coordination: Column; coordination_with_walls: Column;
+}
+export interface BladeData {
+  name: string;
+  force_mean: Column; force_low: Column; force_high: Column;
+  torque_mean: Column; torque_low: Column; torque_high: Column;
+}
+export interface SeriesData {
+  rows: number; every: number; window: number | null; time: Column;
+  largest_force: Column; jammed: Column; kinetic_energy: Column; largest_overlap: Column;
+  blades: BladeData[];
+}
+export interface FlowEnergyData {
+  source: string; total: number | null; rows: number; every: number; time: Column; energy: Column;
+}
+export interface Stay {
+  start: number | null; end: number | null; samples: number;
+  survival_time: number | null; shortest: number | null; longest: number | null;
+  open_at_start: boolean; open_at_end: boolean;
+  peak_force: number | null; peak_time: number | null; peak_in_gap: boolean;
+}
+export interface EventData extends Stay {
+  number: number; first_frame: number; last_frame: number; peak_particle: number; bridged: boolean;
+  members: number[]; member_count: number;
+}
+export interface TrackData extends Stay {
+  particle: number; radius: number | null; height: number | null; path: number | null; mean_speed: number | null;
+}
+export interface SurvivalClassData {
+  low: number | null; high: number | null; events: number; frequency: number | null; share_of_jam_time: number | null;
+}
+export interface Headline {
+  events: number; bridged: number; censored: number; tracks: number; frames: number; particles: number;
+  observed_time: number | null; sampling_interval: number | null;
+  jammed_time: number | null; jammed_share: number | null; jam_frequency: number | null;
+  largest_force: number | null; largest_force_time: number | null; largest_force_source: string;
+  jammed_in_gap_share: number | null;
+}
+export interface RunData {
+  creator: string; creator_version: string; commit: string; created_utc: string;
+  case_toml: string; case_sha256: string; argv: string[]; seed: string; gravity: Column; dt: number | null;
+  wall_loads_known: boolean;
+  materials: { name: string; density: number | null; young: number | null; poisson: number | null }[];
+  interactions: {
+    a: string; b: string;
+    restitution: number | null; friction: number | null; rolling: number | null; work_of_adhesion: number | null;
+  }[];
+  walls: { name: string; kind: string; role: string; material: string; triangles: number }[];
+  gap: { tip_radius: number | null; vessel_radius: number | null };
+}
+export interface ReportData {
+  format: string; schema: number; name: string; description: string;
+  headline: Headline;
+  criteria: {
+    measure: string; jam_force: number; bridge_contact_share: number | null; gap_margin: number | null;
+    survival_classes: Column;
+  };
+  frames: FramesData; series: SeriesData | null; flow_energy: FlowEnergyData;
+  events: EventData[]; tracks: TrackData[];
+  survival_classes: SurvivalClassData[]; jammed_histogram: number[];
+  derived: { name: string; value: string; unit: string }[];
+  run: RunData; notes: string[]; warnings: string[];
+  report: {
+    program: string; version: string; commit: string; created_utc: string; machine: string; command_line: string[];
+    wall_seconds: number | null; particle_steps_per_second: number | null;
+  };
+}
+
+// Throws an Error that says what is wrong; a page that shows half of a broken record would mislead.
+export function parseData(text: string): ReportData {
+  let data: unknown;
+  try {
+    data = JSON.parse(text);
+  } catch (error) {
+    throw new Error(`the data of this page is not valid JSON: ${(error as Error).message}`);
+  }
+  if (typeof data !== 'object' || data === null) throw new Error('the data of this page is not an object');
+  const record = data as Record<string, unknown>;
+  if (record.format !== 'jamscope-report') throw new Error('the data of this page is not a jamscope report');
+  if (record.schema !== 1) throw new Error(`this page reads schema 1 of its data, found ${String(record.schema)}`);
+  for (const part of ['headline', 'criteria', 'frames', 'flow_energy', 'run', 'report'])
+    if (typeof record[part] !== 'object' || record[part] === null) throw new Error(`the data of this page has no "${part}"`);
+  for (const part of ['events', 'tracks', 'survival_classes', 'jammed_histogram', 'derived', 'notes', 'warnings'])
+    if (!Array.isArray(record[part])) throw new Error(`the data of this page has no list "${part}"`);
+  return data as ReportData;
+}

@@ -1,0 +1,10 @@
+import type { View } from '../charts/spec';
+import type { ReportData } from '../data';
+
+export interface Figure {
+  id: string;
+  title: string;
+  paper: string; // the figure of the paper that it answers, or empty
+  caption(data: ReportData): string;
+  view(data: ReportData): View;
+}

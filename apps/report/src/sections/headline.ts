@@ -1,0 +1,66 @@
+// The numbers that come first.
+import type { ReportData } from '../data';
+import { el } from '../dom';
+import { count, instant, known, percent, plural, setting, significant, withUnit } from '../numbers/format';
+import { garwood } from '../numbers/poisson';
+
+export interface Tile {
+  name: string;
+  value: string;
+  note: string;
+}
+
+export function tiles(data: ReportData): Tile[] {
+  const h = data.headline;
+  const threshold = setting(data.criteria.jam_force, 'N');
+  const rate = known(h.observed_time) ? garwood(h.events, h.observed_time) : null;
+  const interval = rate ? `95 % interval ${significant(rate.low)} … ${significant(rate.high)} Hz` : '';
+  const jams: Tile[] = [
+    {
+      name: `Jam events above ${threshold}`,
+      value: count(h.events),
+      note: h.events === 0 ? `no jam in ${plural(h.frames, 'frame')}`
+        : h.censored > 0 ? `${count(h.censored)} of them cut by an end of the record` : 'all begin and end within the record',
+    },
+    {
+      name: 'Jam frequency',
+      value: withUnit(known(h.jam_frequency) ? h.jam_frequency : rate?.rate, 'Hz'),
+      note: !rate ? 'the length of the record is not known' : h.events === 0 ? `below ${withUnit(rate.high, 'Hz')} (95 %)` : interval,
+    },
+    {
+      name: 'Jammed share of time',
+      value: percent(h.jammed_share),
+      note: known(h.observed_time) ? `${withUnit(h.jammed_time, 's')} of ${withUnit(h.observed_time, 's')}` : '',
+    },
+  ];
+  const seen = h.largest_force_source === 'series' ? 'of every step' : 'of the frames only';
+  return [
+    ...jams,
+    {
+      name: 'Largest compressive force',
+      value: withUnit(h.largest_force, 'N'),
+      note: known(h.largest_force) ? `${seen}, at ${instant(h.largest_force_time, h.sampling_interval)} s` : 'not known from this data',
+    },
+    {
+      name: 'Jammed grains in the gap',
+      value: percent(h.jammed_in_gap_share),
+      note: known(h.jammed_in_gap_share) ? 'of all grains jammed in any frame' : h.events === 0 ? 'no grain was jammed' : 'the gap is not known from this data',
+    },
+    {
+      name: 'Events that bridge the gap',
+      value: h.events === 0 ? '–' : `${count(h.bridged)} of ${count(h.events)}`,
+      note: h.events === 0 ? 'no event' : 'force carried from blade to vessel',
+    },
+    {
+      name: 'Flow energy',
+      value: withUnit(data.flow_energy.total, 'J'),
+      note: !known(data.flow_energy.total) ? 'blade loads are not known'
+        : data.flow_energy.source === 'series' ? 'from loads of every step' : 'from loads in the frames: an estimate',
+    },
+  ];
+}
+
+export function drawHeadline(data: ReportData): HTMLElement {
+  return el('dl', { class: 'tiles' }, ...tiles(data).map((tile) =>
+    el('div', {}, el('dt', {}, tile.name), el('dd', { class: 'value' }, tile.value), el('dd', { class: 'note' }, tile.note))));
+}
