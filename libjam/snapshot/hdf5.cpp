@@ -755,6 +755,22 @@ void write_aside(const std::filesystem::path& path, const std::function<void(Fil
   if (error) throw DataError(path.string() + ": cannot put the new file in place: " + error.message());
 }
 
+Condition condition_of(const std::filesystem::path& path) {
+  Condition condition;
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (!error) condition.bytes = bytes;
+  // Superblock versions 2 and 3 (HDF5 file format specification, II.A): signature 8, version, size of offsets, size of
+  // lengths, consistency flags, base address 8, extension address 8, end of file address 8 bytes.
+  std::array<unsigned char, 36> start{};
+  std::ifstream in(path, std::ios::binary);
+  in.read(reinterpret_cast<char*>(start.data()), start.size());
+  if (in.gcount() != start.size() || !is_hdf5(path) || start[8] < 2 || start[8] > 3 || start[9] != 8) return condition;
+  condition.unclosed = (start[11] & 1U) != 0;
+  for (std::size_t k = 0; k < 8; ++k) condition.least_bytes |= std::uint64_t{start[28 + k]} << (8 * k);
+  return condition;
+}
+
 bool is_hdf5(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::array<char, 8> start{};

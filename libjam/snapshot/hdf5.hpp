@@ -216,6 +216,15 @@ void write_aside(const std::filesystem::path& path, const std::function<void(Fil
 // The name beside `path` under which a file is prepared.
 std::filesystem::path aside_of(const std::filesystem::path& path);
 
+// What the first bytes of a file tell about how it was left.
+struct Condition {
+  bool unclosed = false;          // a writer is at work, or was killed
+  std::uint64_t bytes = 0;        // size of the file
+  std::uint64_t least_bytes = 0;  // what it had when it was last closed; 0 if unknown
+  bool cut_short() const { return bytes < least_bytes; }
+};
+Condition condition_of(const std::filesystem::path& path);
+
 // True if the file begins as an HDF5 file does (no exception for missing or short files).
 bool is_hdf5(const std::filesystem::path& path);
 

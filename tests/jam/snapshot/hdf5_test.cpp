@@ -158,7 +158,7 @@ TEST_F(Hdf5, ASizeThatTheFileCannotHoldIsRefusedBeforeAllocation) {
   {
     // 2^40 rows are claimed, one chunk is stored.
     File out = File::create(path);
-    out.make_column<double>("/huge", 65536, true, "1", "");
+    out.make_column<double>("/huge", 1 << 20, true, "1", "");
     out.write_rows("/huge", (std::uint64_t{1} << 40) - 1, std::vector<double>{1});
     out.close();
   }

@@ -1,0 +1,84 @@
+#include "libjam/snapshot/schema.hpp"
+
+#include <bit>
+#include <boost/crc.hpp>
+
+namespace jam::schema {
+
+static_assert(std::endian::native == std::endian::little, "checksums are taken of little-endian bytes");
+
+namespace {
+
+using Crc32c = boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true>;
+
+template <class V>
+void add(Crc32c& crc, const std::vector<V>& values) {
+  crc.process_bytes(values.data(), values.size() * sizeof(V));
+}
+
+}  // namespace
+
+std::string path_of(const Item& item, std::string_view wall) {
+  std::string path(item.path);
+  if (const auto star = path.find('*'); star != std::string::npos) path.replace(star, 1, wall);
+  return path;
+}
+
+std::string object_of(const Item& item, std::string_view wall) {
+  const std::string_view whole = item.path;
+  std::string path(whole.substr(0, whole.find('@')));
+  if (const auto star = path.find('*'); star != std::string::npos) path.replace(star, 1, wall);
+  return path;
+}
+
+std::string attribute_of(const Item& item) {
+  return std::string(item.path.substr(item.path.find('@') + 1));
+}
+
+WallRow row_of(const WallState& s) {
+  const Eigen::Quaterniond& q = s.orientation;
+  return {s.position, s.velocity, s.angular_velocity, s.force, s.torque, {q.w(), q.x(), q.y(), q.z()}};
+}
+
+WallState state_of(const WallRow& r) {
+  WallState s;
+  s.position = r.position;
+  s.orientation = Eigen::Quaterniond(r.quaternion[0], r.quaternion[1], r.quaternion[2], r.quaternion[3]);
+  s.velocity = r.velocity;
+  s.angular_velocity = r.angular_velocity;
+  s.force = r.force;
+  s.torque = r.torque;
+  return s;
+}
+
+Series rows_of(const Series& series, std::size_t first, std::size_t last) {
+  Series part = series;
+  const auto cut = [&](const Item&, auto& values) {
+    if (values.empty()) return;
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>(last), values.end());
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  visit_series(part, cut);
+  for (Series::WallSeries& wall : part.walls) visit_wall_series(wall, cut);
+  return part;
+}
+
+std::uint32_t checksum(const FrameRow& row, const Snapshot& snapshot, bool wall_loads, const Series& new_rows,
+                       const std::vector<Wall>& walls) {
+  Crc32c crc;
+  visit_frame([&](const Item&, auto member) { crc.process_bytes(&(row.*member), sizeof(row.*member)); });
+  for (const WallState& state : snapshot.walls) {
+    const WallRow wall = row_of(state);
+    visit_wall([&](const Item& i, auto member) {
+      if (i.need == required || wall_loads) crc.process_bytes((wall.*member).data(), sizeof(wall.*member));
+    });
+  }
+  const auto add_column = [&](const Item&, const auto& values) { add(crc, values); };
+  visit_particles(snapshot.particles, add_column);
+  visit_pp(snapshot.pp, add_column);
+  visit_pw(snapshot.pw, add_column);
+  visit_all_series(new_rows, walls, [&](const std::string&, const Item&, const auto& values) { add(crc, values); });
+  return crc.checksum();
+}
+
+}  // namespace jam::schema
