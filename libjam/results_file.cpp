@@ -1,0 +1,371 @@
+#include "libjam/results_file.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "libjam/errors.hpp"
+#include "libjam/snapshot/hdf5.hpp"
+
+namespace jam {
+namespace {
+
+constexpr const char* format_name = "jamscope-analysis";
+constexpr const char* schema_version = "1.0";
+
+// The columns of each table are listed once, in a function that hands name, member, unit and doc to a visitor. Writing
+// and reading are two visitors, so they cannot disagree. To store one more member: add its line to the list.
+
+template <class Visit>
+void columns_of(FrameSummary*, Visit&& column) {
+  column("time", &FrameSummary::time, "s", "time of the frame");
+  column("step", &FrameSummary::step, "1", "step of the source's own time stepping");
+  column("particles", &FrameSummary::particles, "1", "particles in the frame");
+  column("particle_contacts", &FrameSummary::particle_contacts, "1", "contacts between particles");
+  column("wall_contacts", &FrameSummary::wall_contacts, "1", "contacts of particles with walls");
+  column("coordination", &FrameSummary::coordination, "1", "2 N_pp / N, walls not counted");
+  column("coordination_with_walls", &FrameSummary::coordination_with_walls, "1", "(2 N_pp + N_pw) / N");
+  column("largest_compressive_force", &FrameSummary::largest_compressive_force, "N", "over all particles");
+  column("mean_compressive_force", &FrameSummary::mean_compressive_force, "N", "over all particles");
+  column("largest_particle", &FrameSummary::largest_particle, "1", "id of the particle with the largest force");
+  column("jammed", &FrameSummary::jammed, "1", "particles above the jam force");
+  column("jammed_in_gap", &FrameSummary::jammed_in_gap, "1", "of those, in the gap between blade tip and vessel");
+  column("bridges", &FrameSummary::bridges, "1", "clusters that carry force from a blade to a vessel");
+  column("largest_bridge", &FrameSummary::largest_bridge, "1", "particles in the largest bridge");
+}
+
+template <class Visit>
+void columns_of(Cluster*, Visit&& column) {
+  column("frame", &Cluster::frame, "1", "row of /frames");
+  column("bridges", &Cluster::bridges, "1", "carries force from a blade to a vessel");
+  column("blade_force", &Cluster::blade_force, "N", "sum of the repulsive normal forces with blades");
+  column("vessel_force", &Cluster::vessel_force, "N", "sum of the repulsive normal forces with vessel walls");
+  column("largest_compressive_force", &Cluster::largest_compressive_force, "N", "over the members");
+  column("in_gap", &Cluster::in_gap, "1", "members in the gap");
+}
+
+template <class Visit>
+void columns_of(JamEvent*, Visit&& column) {
+  column("first_frame", &JamEvent::first_frame, "1", "row of /frames");
+  column("last_frame", &JamEvent::last_frame, "1", "row of /frames, inclusive");
+  column("samples", &JamEvent::samples, "1", "frames above the threshold, n");
+  column("start", &JamEvent::start, "s", "time of the first sample above the threshold");
+  column("end", &JamEvent::end, "s", "time of the last sample above the threshold");
+  column("survival_time", &JamEvent::survival_time, "s", "n times the sampling interval");
+  column("shortest", &JamEvent::shortest, "s", "lower bound of the duration, (n-1) sampling intervals");
+  column("longest", &JamEvent::longest, "s", "upper bound, (n+1) sampling intervals; infinite where cut off");
+  column("open_at_start", &JamEvent::open_at_start, "1", "the record begins inside the event");
+  column("open_at_end", &JamEvent::open_at_end, "1", "the record ends inside the event");
+  column("peak_force", &JamEvent::peak_force, "N", "largest compressive force of a particle");
+  column("peak_time", &JamEvent::peak_time, "s", "when");
+  column("peak_particle", &JamEvent::peak_particle, "1", "id of the particle that carried it");
+  column("peak_in_gap", &JamEvent::peak_in_gap, "1", "that particle sat in the gap then");
+  column("bridged", &JamEvent::bridged, "1", "force went from a blade to a vessel in one of its frames or more");
+}
+
+template <class Visit>
+void columns_of(Track::Point*, Visit&& column) {
+  column("frame", &Track::Point::frame, "1", "row of /frames");
+  column("position", &Track::Point::position, "m", "centre of the particle");
+  column("velocity", &Track::Point::velocity, "m/s", "of the centre; NaN where the source has none");
+  column("compressive_force", &Track::Point::compressive_force, "N", "of the particle");
+}
+
+template <class Visit>
+void columns_of(SurvivalClass*, Visit&& column) {
+  column("low", &SurvivalClass::low, "s", "survival times from here");
+  column("high", &SurvivalClass::high, "s", "to below here");
+  column("events", &SurvivalClass::events, "1", "global events in the class");
+  column("frequency", &SurvivalClass::frequency, "1/s", "events over observed time");
+  column("share_of_jam_time", &SurvivalClass::share_of_jam_time, "1", "of the summed survival times");
+}
+
+template <class Visit>
+void columns_of(FlowEnergy*, Visit&& column) {
+  column("time", &FlowEnergy::time, "s", "end of the window, or time of the frame");
+  column("power", &FlowEnergy::power, "W", "power that the blades put into the grains");
+  column("energy", &FlowEnergy::energy, "J", "work done up to this time");
+}
+
+template <class Visit>
+void scalars_of(Analysis*, Visit&& scalar) {
+  scalar("observed_time", &Analysis::observed_time, "s", "frames times sampling interval");
+  scalar("sampling_interval", &Analysis::sampling_interval, "s", "median distance of frames");
+  scalar("jammed_time", &Analysis::jammed_time, "s", "summed survival times of the global events");
+  scalar("jam_frequency", &Analysis::jam_frequency, "1/s", "global events over observed time");
+  scalar("jammed_in_gap_share", &Analysis::jammed_in_gap_share, "1", "of all jammed particle samples");
+}
+
+template <class Visit>
+void scalars_of(Criteria*, Visit&& scalar) {
+  scalar("jam_force", &Criteria::jam_force, "N", "a particle is jammed above this compressive force");
+  scalar("bridge_contact_share", &Criteria::bridge_contact_share, "1",
+         "of jam_force: contacts above it carry the load");
+  scalar("gap_margin", &Criteria::gap_margin, "1", "particle diameters inside the tip circle that count as gap");
+}
+
+struct MeasureName {
+  CompressiveMeasure measure;
+  const char* name;
+};
+constexpr MeasureName measure_names[] = {
+    {CompressiveMeasure::sum, "sum"}, {CompressiveMeasure::max, "max"}, {CompressiveMeasure::signed_, "signed"}};
+
+// HDF5 has no truth values: stored as 0 and 1.
+template <class T>
+using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
+
+// `row_of(element)` is the struct whose members are the columns.
+template <class Row, class Elements, class RowOf>
+void write_table(h5::File& file, const std::string& group, const Elements& elements, RowOf row_of) {
+  file.make_group(group);
+  columns_of(static_cast<Row*>(nullptr),
+             [&]<class T>(const char* name, T Row::*member, const char* unit, const char* doc) {
+               std::vector<Stored<T>> values;
+               values.reserve(elements.size());
+               for (const auto& element : elements) values.push_back(row_of(element).*member);
+               file.write(group + "/" + name, values, unit, doc);
+             });
+}
+
+template <class Row>
+void write_table(h5::File& file, const std::string& group, const std::vector<Row>& rows) {
+  write_table<Row>(file, group, rows, [](const Row& row) -> const Row& { return row; });
+}
+
+template <class Row>
+std::vector<Row> read_table(const h5::File& file, const std::string& group) {
+  std::vector<Row> rows;
+  bool first = true;
+  columns_of(static_cast<Row*>(nullptr), [&]<class T>(const char* name, T Row::*member, const char*, const char*) {
+    const std::string path = group + "/" + name;
+    const std::vector<Stored<T>> values = file.read<Stored<T>>(path);
+    if (first) rows.resize(values.size());
+    first = false;
+    if (values.size() != rows.size()) {
+      file.fail(path, "has " + std::to_string(values.size()) + " rows, expected " + std::to_string(rows.size()) +
+                          " as in the group's first column");
+    }
+    for (std::size_t k = 0; k < rows.size(); ++k) rows[k].*member = static_cast<T>(values[k]);
+  });
+  return rows;
+}
+
+// Lists of different length, one per row, stored end to end: `PREFIX_start` and `PREFIX_count` say which part is whose.
+template <class Lists, class ListOf>
+auto write_parts(h5::File& file, const std::string& group, const std::string& prefix, const std::string& target,
+                 const Lists& lists, ListOf list_of) {
+  std::vector<std::uint64_t> start, count;
+  std::remove_cvref_t<decltype(list_of(lists.front()))> all;
+  for (const auto& owner : lists) {
+    const auto& list = list_of(owner);
+    start.push_back(all.size());
+    count.push_back(list.size());
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  file.write(group + "/" + prefix + "_start", start, "1", "first row in " + target);
+  file.write(group + "/" + prefix + "_count", count, "1", "rows in " + target);
+  return all;
+}
+
+template <class T>
+std::vector<std::vector<T>> read_parts(const h5::File& file, const std::string& group, const std::string& prefix,
+                                       const std::vector<T>& all, std::size_t owners) {
+  const std::string start_name = group + "/" + prefix + "_start", count_name = group + "/" + prefix + "_count";
+  const auto start = file.read<std::uint64_t>(start_name), count = file.read<std::uint64_t>(count_name);
+  if (start.size() != owners) file.fail(start_name, "expected " + std::to_string(owners) + " rows");
+  if (count.size() != owners) file.fail(count_name, "expected " + std::to_string(owners) + " rows");
+  std::vector<std::vector<T>> lists(owners);
+  std::uint64_t end = 0;
+  for (std::size_t k = 0; k < owners; ++k) {
+    // End to end, so that no file can make many lists out of the same few rows.
+    if (start[k] != end || count[k] > all.size() - end) {
+      file.fail(start_name, "row " + std::to_string(k) + " claims [" + std::to_string(start[k]) + ", +" +
+                                std::to_string(count[k]) + "), expected parts end to end within " +
+                                std::to_string(all.size()) + " rows");
+    }
+    end += count[k];
+    lists[k].assign(all.begin() + static_cast<std::ptrdiff_t>(start[k]),
+                    all.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+  return lists;
+}
+
+template <class Struct>
+void write_scalars(h5::File& file, const std::string& group, const Struct& values) {
+  scalars_of(static_cast<Struct*>(nullptr),
+             [&](const char* name, double Struct::*member, const char* unit, const char* doc) {
+               file.write(group + "/" + name, std::vector<double>{values.*member}, unit, doc);
+             });
+}
+
+template <class T>
+T read_one(const h5::File& file, const std::string& path) {
+  const std::vector<T> values = file.read<T>(path);
+  if (values.size() != 1) file.fail(path, "has " + std::to_string(values.size()) + " rows, expected 1");
+  return values.front();
+}
+
+template <class Struct>
+void read_scalars(const h5::File& file, const std::string& group, Struct& values) {
+  scalars_of(static_cast<Struct*>(nullptr), [&](const char* name, double Struct::*member, const char*, const char*) {
+    values.*member = read_one<double>(file, group + "/" + name);
+  });
+}
+
+void write_criteria(h5::File& file, const Criteria& criteria) {
+  for (const auto& [measure, name] : measure_names) {
+    if (measure == criteria.measure) {
+      file.write_text("/criteria/measure", name, "how contacts add up to a compressive force: sum, max or signed");
+    }
+  }
+  write_scalars(file, "/criteria", criteria);
+  file.write("/criteria/survival_classes", criteria.survival_classes, "s", "upper bounds of the survival-time classes");
+}
+
+Criteria read_criteria(const h5::File& file) {
+  Criteria criteria;
+  const std::string measure = file.read_text("/criteria/measure");
+  const auto* row = std::find_if(std::begin(measure_names), std::end(measure_names),
+                                 [&](const MeasureName& m) { return m.name == measure; });
+  if (row == std::end(measure_names)) {
+    file.fail("/criteria/measure", "is \"" + measure + "\", expected sum, max or signed");
+  }
+  criteria.measure = row->measure;
+  read_scalars(file, "/criteria", criteria);
+  criteria.survival_classes = file.read<double>("/criteria/survival_classes");
+  return criteria;
+}
+
+void write_tracks(h5::File& file, const std::vector<Track>& tracks) {
+  write_table<JamEvent>(file, "/tracks", tracks, [](const Track& track) -> const JamEvent& { return track.event; });
+  std::vector<ParticleId> particle;
+  for (const Track& track : tracks) particle.push_back(track.particle);
+  file.write("/tracks/particle", particle, "1", "id of the particle");
+  const auto points = write_parts(file, "/tracks", "point", "/tracks/points", tracks,
+                                  [](const Track& t) -> const std::vector<Track::Point>& { return t.points; });
+  write_table(file, "/tracks/points", points);
+}
+
+std::vector<Track> read_tracks(const h5::File& file) {
+  const std::vector<JamEvent> events = read_table<JamEvent>(file, "/tracks");
+  const auto particle = file.read<ParticleId>("/tracks/particle");
+  if (particle.size() != events.size())
+    file.fail("/tracks/particle", "expected " + std::to_string(events.size()) + " rows");
+  auto points = read_parts(file, "/tracks", "point", read_table<Track::Point>(file, "/tracks/points"), events.size());
+  std::vector<Track> tracks(events.size());
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    tracks[k] = {particle[k], events[k], std::move(points[k])};
+    tracks[k].event.members = {particle[k]};
+  }
+  return tracks;
+}
+
+template <class Row>
+void write_with_members(h5::File& file, const std::string& group, const std::vector<Row>& rows) {
+  write_table(file, group, rows);
+  const auto members = write_parts(file, group, "member", group + "/members", rows,
+                                   [](const Row& row) -> const std::vector<ParticleId>& { return row.members; });
+  file.write(group + "/members", members, "1", "particle ids, ascending within each part");
+}
+
+template <class Row>
+std::vector<Row> read_with_members(const h5::File& file, const std::string& group) {
+  std::vector<Row> rows = read_table<Row>(file, group);
+  auto members = read_parts(file, group, "member", file.read<ParticleId>(group + "/members"), rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].members = std::move(members[k]);
+  return rows;
+}
+
+void write_flow_energy(h5::File& file, const FlowEnergy& flow) {
+  columns_of(static_cast<FlowEnergy*>(nullptr),
+             [&](const char* name, std::vector<double> FlowEnergy::*member, const char* unit, const char* doc) {
+               file.write(std::string("/flow_energy/") + name, flow.*member, unit, doc);
+             });
+  file.write_text("/flow_energy/source", flow.source, "series (step-averaged), frames or contacts (sampled), none");
+  file.write("/flow_energy/total", std::vector<double>{flow.total}, "J", "work done by the blades in the whole record");
+}
+
+FlowEnergy read_flow_energy(const h5::File& file) {
+  FlowEnergy flow;
+  columns_of(static_cast<FlowEnergy*>(nullptr), [&](const char* name, std::vector<double> FlowEnergy::*member,
+                                                    const char*, const char*) {
+    flow.*member = file.read<double>(std::string("/flow_energy/") + name);
+    if ((flow.*member).size() != flow.time.size()) {
+      file.fail(std::string("/flow_energy/") + name, "expected " + std::to_string(flow.time.size()) + " rows");
+    }
+  });
+  flow.source = file.read_text("/flow_energy/source");
+  flow.total = read_one<double>(file, "/flow_energy/total");
+  return flow;
+}
+
+void expect_frame(const h5::File& file, const std::string& group, std::uint32_t frame, std::size_t frames) {
+  if (frame >= frames) {
+    file.fail(group, "names frame " + std::to_string(frame) + ", expected one below " + std::to_string(frames));
+  }
+}
+
+void expect_frames(const h5::File& file, const std::string& group, const JamEvent& event, std::size_t frames) {
+  expect_frame(file, group, event.last_frame, frames);
+  expect_frame(file, group, event.first_frame, std::size_t{event.last_frame} + 1);
+}
+
+// Rows of /frames that other tables name must be there.
+void check_frame_rows(const h5::File& file, const Analysis& analysis) {
+  const std::size_t frames = analysis.frames.size();
+  for (const Cluster& cluster : analysis.clusters) expect_frame(file, "/clusters", cluster.frame, frames);
+  for (const JamEvent& event : analysis.events) expect_frames(file, "/events", event, frames);
+  for (const Track& track : analysis.tracks) {
+    expect_frames(file, "/tracks", track.event, frames);
+    for (const Track::Point& point : track.points) expect_frame(file, "/tracks/points", point.frame, frames);
+  }
+}
+
+}  // namespace
+
+void write_results(const std::filesystem::path& path, const Analysis& analysis, const RunInfo& info) {
+  h5::write_aside(path, [&](h5::File& file) {
+    file.set_attribute("/", "format", format_name);
+    file.set_attribute("/", "schema_version", schema_version);
+    file.set_attribute("/", "creator", info.creator);
+    file.set_attribute("/", "creator_version", info.creator_version);
+    file.set_attribute("/", "commit", info.commit);
+    file.set_attribute("/", "created_utc", info.created_utc);
+    file.set_attribute("/", "case_sha256", info.case_sha256);
+    file.set_attribute("/", "seed", info.seed);
+    write_criteria(file, analysis.criteria);
+    write_scalars(file, "/summary", analysis);
+    write_table(file, "/frames", analysis.frames);
+    write_with_members(file, "/clusters", analysis.clusters);
+    write_with_members(file, "/events", analysis.events);
+    write_tracks(file, analysis.tracks);
+    write_table(file, "/survival_classes", analysis.survival_classes);
+    file.write("/jammed_histogram/frames", analysis.jammed_histogram, "1", "row n: frames with n jammed particles");
+    write_flow_energy(file, analysis.flow_energy);
+    file.write_texts("/notes", analysis.notes, "what could not be computed from this data, and why");
+  });
+}
+
+Analysis read_results(const std::filesystem::path& path) {
+  const h5::File file = h5::File::open(path);
+  if (!file.has_attribute("/", "format") || file.attribute<std::string>("/", "format") != format_name) {
+    file.fail("/", std::string("not an analysis result, expected the attribute format = \"") + format_name + "\"");
+  }
+  const auto version = file.attribute<std::string>("/", "schema_version");
+  if (!version.starts_with("1.")) file.fail("/", "schema_version is " + version + ", expected 1.x");
+  Analysis analysis;
+  analysis.criteria = read_criteria(file);
+  read_scalars(file, "/summary", analysis);
+  analysis.frames = read_table<FrameSummary>(file, "/frames");
+  analysis.clusters = read_with_members<Cluster>(file, "/clusters");
+  analysis.events = read_with_members<JamEvent>(file, "/events");
+  analysis.tracks = read_tracks(file);
+  analysis.survival_classes = read_table<SurvivalClass>(file, "/survival_classes");
+  analysis.jammed_histogram = file.read<std::uint32_t>("/jammed_histogram/frames");
+  analysis.flow_energy = read_flow_energy(file);
+  analysis.notes = file.read_texts("/notes");
+  check_frame_rows(file, analysis);
+  return analysis;
+}
+
+}  // namespace jam

@@ -1,0 +1,28 @@
+// jam.h5: the result of an analysis, beside the snapshots it was made from and never inside them.
+//
+//   /                  attrs: format="jamscope-analysis" schema_version, and of the run: creator creator_version commit
+//                      created_utc case_sha256 seed
+//   /criteria          the thresholds, one row each
+//   /summary           scalars, one row each
+//   /frames            one row per frame
+//   /clusters          one row per cluster; members are rows [member_start, + member_count) of /clusters/members
+//   /events            the global stream; members as above
+//   /tracks            the per-particle stream; points are rows [point_start, + point_count) of /tracks/points/...
+//   /survival_classes /jammed_histogram /flow_energy /notes
+//
+// Every dataset has the attributes `unit` and `doc`. Truth values are 0 and 1.
+#pragma once
+#include <filesystem>
+
+#include "libjam/analysis.hpp"
+
+namespace jam {
+
+// Written aside and renamed, so `path` holds either the old result or the whole new one. Throws DataError.
+void write_results(const std::filesystem::path& path, const Analysis& analysis, const RunInfo& info);
+
+// The same Analysis again, bit by bit. Throws DataError where the file cannot be read, is something else, or breaks its
+// own structure.
+Analysis read_results(const std::filesystem::path& path);
+
+}  // namespace jam
