@@ -53,7 +53,7 @@ export function drawCard(figure: Figure, data: ReportData, view: TimeView): Card
   const tools = el('span', { class: 'tools' });
   const paper = figure.paper === '' ? null : el('span', { class: 'paper', title: 'Figure or table of Xuan and Nan (2024) that this one answers' }, figure.paper);
   const head = el('header', {}, el('h3', {}, figure.title, paper && ' ', paper), tools);
-  const box = el('section', { class: `card ${spec.kind}`, id: figure.id }, head);
+  const box = el('section', { class: `card shows-${spec.kind}`, id: figure.id }, head);
   let redraw = (): void => {};
   if (spec.kind === 'missing') {
     box.append(emptyBox(spec.why));

@@ -4,7 +4,7 @@ import { drawCard, type Card } from './card';
 import { parseData, type Column, type EventData, type ReportData } from './data';
 import { el } from './dom';
 import { groups } from './figures';
-import { instant, known, plural, withUnit } from './numbers/format';
+import { instant, known, plural, setting } from './numbers/format';
 import { drawConventions } from './sections/conventions';
 import { drawHeadline } from './sections/headline';
 import { drawEvents, drawTracks } from './sections/lists';
@@ -32,8 +32,8 @@ function subtitle(data: ReportData): string {
   return [
     h.particles > 0 ? plural(h.particles, 'grain') : '',
     h.frames > 0 ? plural(h.frames, 'frame') : 'no frames',
-    known(h.observed_time) ? `${withUnit(h.observed_time, 's')} of record` : '',
-    known(h.sampling_interval) ? `one frame each ${withUnit(h.sampling_interval, 's')}` : '',
+    known(h.observed_time) ? `${setting(h.observed_time, 's')} of record` : '',
+    known(h.sampling_interval) ? `one frame each ${setting(h.sampling_interval, 's')}` : '',
   ].filter(Boolean).join(' · ');
 }
 
@@ -94,8 +94,8 @@ function draw(data: ReportData, page: HTMLElement): void {
       el('h2', {}, group.title), group.id === 'over-time' && bar, el('div', { class: 'cards' }, ...drawn.map((card) => card.box)));
   });
   const links: [string, string][] = [
-    ...groups.map((g): [string, string] => [g.id, g.title]),
-    ['events', 'Events'], ['tracks', 'Tracks'], ['provenance', 'Provenance'], ['conventions', 'Conventions'],
+    ['over-time', 'Over time'], ['events', 'Events'],
+    ...groups.slice(1).map((g): [string, string] => [g.id, g.title]), ['tracks', 'Tracks'], ['provenance', 'Provenance'], ['conventions', 'Conventions'],
   ];
   const overTime = sections.shift()!;
   page.append(

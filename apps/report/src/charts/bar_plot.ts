@@ -1,6 +1,6 @@
 import { svg } from '../dom';
 import { roundWidth } from '../numbers/bins';
-import { scaleFor, significant } from '../numbers/format';
+import { decimals, scaleFor, significant } from '../numbers/format';
 import type { BarPlot } from './spec';
 
 const width = 560;
@@ -15,10 +15,9 @@ export interface Tick {
 // About five round ticks from zero to at least `largest`.
 export function ticks(largest: number): Tick[] {
   const step = roundWidth((largest > 0 ? largest : 1) / 5);
-  const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
   const found: Tick[] = [];
   for (let k = 0; (k - 1) * step < largest * (1 - 1e-9) || k < 2; ++k)
-    found.push({ value: k * step, text: (k * step).toFixed(decimals) });
+    found.push({ value: k * step, text: (k * step).toFixed(decimals(step)) });
   return found;
 }
 

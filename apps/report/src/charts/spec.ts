@@ -20,6 +20,7 @@ export interface TimePlot {
   log?: 'offer' | 'first' | 'always'; // log axis: as an option, as the first choice, without choice
   threshold?: { value: number; label: string };
   fromZero?: boolean;
+  whole?: boolean;   // counts: no ticks between whole numbers
 }
 
 export interface Bar {

@@ -1,7 +1,7 @@
 import uPlot from 'uplot';
 import type { Column } from '../data';
 import { el } from '../dom';
-import { inScale, known, powerOfTen, scaleFor, withUnit } from '../numbers/format';
+import { count, decimals, inScale, known, powerOfTen, scaleFor, withUnit } from '../numbers/format';
 import type { TimeView } from '../time_view';
 import type { Curve, TimePlot } from './spec';
 
@@ -27,8 +27,13 @@ function joined(curves: readonly Curve[], positive: boolean): uPlot.AlignedData 
   return [data[0], ...curves.map((c) => data[1 + order.indexOf(c)]!)] as uPlot.AlignedData;
 }
 
-function decimals(increment: number): number {
-  return Math.max(0, Math.min(12, Math.ceil(-Math.log10(increment) - 1e-9)));
+const wholeSteps = [1, 2, 5].flatMap((n) => [0, 1, 2, 3, 4, 5, 6].map((e) => n * 10 ** e)).sort((a, b) => a - b);
+
+// Powers of ten only, where finer lines would fill the plot.
+function decades(plot: uPlot, splits: (number | null)[]): (number | null)[] {
+  const { min, max } = plot.scales.y!;
+  if (!known(min) || !known(max) || max / min < 1e3) return splits;
+  return splits.map((v) => (known(v) && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9 ? v : null));
 }
 
 function logLabel(value: number): string {
@@ -43,16 +48,16 @@ function largestOf(curves: readonly Curve[]): number {
   return largest;
 }
 
-function series(curve: Curve, unit: string): uPlot.Series {
+function series(curve: Curve, spec: TimePlot): uPlot.Series {
   const edge = curve.kind === 'low' || curve.kind === 'high';
   return {
     label: curve.label,
     stroke: () => colour(edge ? `${curve.colour}-band` : curve.colour),
     width: edge ? 0.75 : 1.5,
     dash: curve.kind === 'dashes' ? [6, 4] : undefined,
-    paths: curve.kind === 'steps' ? uPlot.paths.stepped!({ align: -1 }) : undefined,
+    paths: curve.kind === 'steps' ? uPlot.paths.stepped!({ align: 1 }) : undefined,
     points: edge ? { show: false } : undefined,
-    value: (_plot, v) => withUnit(v, unit, 4),
+    value: (_plot, v) => spec.whole ? count(v) : withUnit(v, spec.unit, 4),
   };
 }
 
@@ -78,7 +83,8 @@ function drawEvents(plot: uPlot, view: TimeView): void {
     }
   };
   ctx.save();
-  for (const event of view.events) paint(event.start, event.end, colour('event'));
+  for (const event of view.events)
+    if (event.start !== marked?.start) paint(event.start, event.end, colour('event'));
   if (marked) paint(marked.start, marked.end, colour('event-marked'));
   ctx.restore();
 }
@@ -141,6 +147,8 @@ function options(spec: TimePlot, log: boolean, width: number, view: TimeView): u
       { ...axis, label: 'Time (s)', labelSize: 18, size: 34, values: (_p, at, _a, _s, step) => at.map((v) => v.toFixed(decimals(step)).replace('-', '−')) },
       {
         ...axis,
+        ...(log ? { grid: { ...axis.grid, filter: decades }, ticks: { ...axis.ticks, filter: decades } } : {}),
+        ...(spec.whole ? { incrs: wholeSteps } : {}),
         label: unit === '' ? spec.quantity : `${spec.quantity} (${unit})`,
         labelSize: 20,
         size: 56,
@@ -151,11 +159,12 @@ function options(spec: TimePlot, log: boolean, width: number, view: TimeView): u
     ],
     series: [
       { label: 'Time', value: (_plot, t) => (known(t) ? `${inScale(t, { factor: 1, unit: 's' }, 6)} s` : '–') },
-      ...spec.curves.map((curve) => series(curve, spec.unit)),
+      ...spec.curves.map((curve) => series(curve, spec)),
     ],
     bands: bands(spec.curves),
     legend: { live: true, markers: { width: 2 } },
     cursor: {
+      y: false,
       sync: { key: 'time', scales: ['x', null], setSeries: false, filters: { pub: (type) => type === 'mousemove' || type === 'mouseleave' } },
       drag: { x: true, y: false, setScale: false },
       // Hover reads the nearest value of each curve, also where only another curve has this instant.

@@ -81,7 +81,7 @@ export const logForce: Figure = {
   paper: 'Fig. 11',
   caption: (data) => {
     const width = data.series ? withUnit(medianWidth(data.series.time), 's', 2) : '';
-    return `Magnitude of the window mean. The running median over ${width} is what remains when short peaks are set aside: ` +
+    return `Magnitude of the window mean. The running median over ${width} is what remains when peaks shorter than half of it are set aside: ` +
       'jams stand out as the distance between the two.';
   },
   view: (data) => {

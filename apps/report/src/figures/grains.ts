@@ -13,8 +13,8 @@ export const compressiveForce: Figure = {
     const series = data.series?.largest_force.length
       ? ' Dashed: largest force in any step between the frames.'
       : ' Peaks between two frames are not seen in this data.';
-    return `Largest and mean over all grains in each frame.${series} A grain above ${setting(data.criteria.jam_force, 'N')} counts as jammed. ` +
-      `Shaded: jam events.${thinned}`;
+    return `Largest and mean over all grains in each frame.${series} A grain above ${setting(data.criteria.jam_force, 'N')} counts as jammed.` +
+      `${data.headline.events > 0 ? ' Shaded: jam events.' : ''}${thinned}`;
   },
   view: (data) => {
     const { frames, series, criteria } = data;
@@ -53,7 +53,7 @@ export const jammedCount: Figure = {
     curves.push(
       { label: 'jammed grains', time: frames.time, values: frames.jammed, colour: 'vermillion', kind: 'steps' },
       { label: 'bridges', time: frames.time, values: frames.bridges, colour: 'blue', kind: 'steps' });
-    return { kind: 'time', quantity: 'Number', unit: '', curves, fromZero: true };
+    return { kind: 'time', quantity: 'Number', unit: '', curves, fromZero: true, whole: true };
   },
 };
 

@@ -82,9 +82,10 @@ export const jammedHistogram: Figure = {
       (all > 0 ? `; ${count(none)} of ${count(all)} frames (${percent(none / all)}) have none and are left out.` : '.');
   },
   view: (data) => {
-    const counts = data.jammed_histogram;
+    const all = data.jammed_histogram;
+    const counts = all.slice(0, all.findLastIndex((n) => n > 0) + 1);
     const jammed = counts.slice(1).reduce((a, b) => a + b, 0);
-    if (jammed === 0) return missing(counts.length === 0 ? 'The record holds no frames.' : noJam(data));
+    if (jammed === 0) return missing(all.length === 0 ? 'The record holds no frames.' : noJam(data));
     // A long tail ends in one bar for "k or more".
     const shown = Math.min(counts.length - 1, 20);
     const bars: Bar[] = [];

@@ -64,11 +64,3 @@ export function runningMedian(x: readonly number[], y: readonly (number | null)[
   }
   return result;
 }
-
-// Index of the value nearest to `x` in an ascending array; -1 where it is empty.
-export function nearest(sorted: readonly number[], x: number): number {
-  const k = firstNotBelow(sorted, x);
-  if (k === 0) return sorted.length === 0 ? -1 : 0;
-  if (k === sorted.length) return k - 1;
-  return x - sorted[k - 1]! <= sorted[k]! - x ? k - 1 : k;
-}

@@ -54,8 +54,8 @@ export function withUnit(value: number | null | undefined, unit: string, digits 
 // A setting somebody chose, without digits they did not write: 20 N, not 20.0 N.
 export function setting(value: number | null | undefined, unit: string): string {
   if (!known(value)) return unknown;
-  const scale = scaleFor(value, unit, 10);
-  const text = String(Number((value / scale.factor).toPrecision(10))).replace('-', '−');
+  const scale = scaleFor(value, unit, 8);
+  const text = String(Number((value / scale.factor).toPrecision(8))).replace('-', '−');
   return scale.unit === '' ? text : `${text} ${scale.unit}`;
 }
 
@@ -78,6 +78,31 @@ export function columnScale(values: readonly (number | null | undefined)[], unit
 
 export function inScale(value: number | null | undefined, scale: Scale, digits = 3): string {
   return known(value) ? significant(value / scale.factor, digits) : unknown;
+}
+
+// Decimals that write every multiple of `step` exactly: 0.25 needs two.
+export function decimals(step: number): number {
+  for (let d = 0; d < 12; ++d) {
+    const scaled = step * 10 ** d;
+    if (scaled > 0.5 && Math.abs(scaled - Math.round(scaled)) < 1e-6 * scaled) return d;
+  }
+  return 12;
+}
+
+// 5321 s -> "1 h 28 min 41 s".
+export function duration(seconds: number | null | undefined): string {
+  if (!known(seconds)) return unknown;
+  if (seconds < 60) return withUnit(seconds, 's');
+  const whole = Math.round(seconds);
+  const parts: [number, string][] = [[Math.floor(whole / 3600), 'h'], [Math.floor(whole / 60) % 60, 'min'], [whole % 60, 's']];
+  return parts.filter(([n], k) => n > 0 || (k === 1 && whole >= 3600 && whole % 3600 !== 0)).map(([n, unit]) => `${n} ${unit}`).join(' ');
+}
+
+// 4.2e6 -> "4.20·10⁶", for units that take no prefix.
+export function scientific(value: number | null | undefined, digits = 3): string {
+  if (!known(value) || value === 0) return known(value) ? '0' : unknown;
+  const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
+  return `${mantissa}·${powerOfTen(Number(exponent))}`.replace('-', '−');
 }
 
 // An instant with enough decimals to tell neighbouring samples apart.

@@ -1,7 +1,7 @@
 // What the words and numbers of this page mean.
 import type { ReportData } from '../data';
 import { el } from '../dom';
-import { known, setting, withUnit } from '../numbers/format';
+import { known, setting } from '../numbers/format';
 
 export function drawConventions(data: ReportData): HTMLElement {
   const d = data.headline.sampling_interval;
@@ -11,7 +11,7 @@ export function drawConventions(data: ReportData): HTMLElement {
     ['Jammed', `A grain is jammed in a frame when its compressive force is larger than ${force}.`],
     ['Jam event', 'A run of consecutive frames in each of which at least one grain is jammed, whichever grain that is. ' +
       'Tracks follow each grain by itself, so one event may hold several tracks.'],
-    ['Survival time', `Of n samples that are D apart${known(d) ? ` (here D = ${withUnit(d, 's')})` : ''}: n D. The true duration lies in the ` +
+    ['Survival time', `Of n samples that are D apart${known(d) ? ` (here D = ${setting(d, 's')})` : ''}: n D. The true duration lies in the ` +
       'bracket ((n − 1) D, (n + 1) D); n D is right on average. An event that an end of the record cuts has no upper limit: only "more than" is known.'],
     ['Jammed share of time', 'Sum of the survival times over the length of the record, which is frames times D.'],
     ['Interval of a rate', 'Garwood: the exact 95 % interval of a Poisson count, divided by the length of the record. ' +

@@ -14,12 +14,12 @@ export function tiles(data: ReportData): Tile[] {
   const h = data.headline;
   const threshold = setting(data.criteria.jam_force, 'N');
   const rate = known(h.observed_time) ? garwood(h.events, h.observed_time) : null;
-  const interval = rate ? `95 % interval ${significant(rate.low)} … ${significant(rate.high)} Hz` : '';
+  const interval = rate ? `95 % interval ${significant(rate.low)} … ${significant(rate.high)}\u00a0Hz` : '';
   const jams: Tile[] = [
     {
       name: `Jam events above ${threshold}`,
       value: count(h.events),
-      note: h.events === 0 ? `no jam in ${plural(h.frames, 'frame')}`
+      note: h.frames === 0 ? 'the record holds no frames' : h.events === 0 ? `no jam in ${plural(h.frames, 'frame')}`
         : h.censored > 0 ? `${count(h.censored)} of them cut by an end of the record` : 'all begin and end within the record',
     },
     {
@@ -33,7 +33,7 @@ export function tiles(data: ReportData): Tile[] {
       note: known(h.observed_time) ? `${withUnit(h.jammed_time, 's')} of ${withUnit(h.observed_time, 's')}` : '',
     },
   ];
-  const seen = h.largest_force_source === 'series' ? 'of every step' : 'of the frames only';
+  const seen = h.largest_force_source === 'series' ? 'over every step' : 'over the frames only';
   return [
     ...jams,
     {
@@ -43,8 +43,8 @@ export function tiles(data: ReportData): Tile[] {
     },
     {
       name: 'Jammed grains in the gap',
-      value: percent(h.jammed_in_gap_share),
-      note: known(h.jammed_in_gap_share) ? 'of all grains jammed in any frame' : h.events === 0 ? 'no grain was jammed' : 'the gap is not known from this data',
+      value: h.events === 0 ? '–' : percent(h.jammed_in_gap_share),
+      note: h.events === 0 ? 'no grain was jammed' : known(h.jammed_in_gap_share) ? 'of all grains jammed in any frame' : 'the gap is not known from this data',
     },
     {
       name: 'Events that bridge the gap',

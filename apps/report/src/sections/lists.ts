@@ -2,7 +2,7 @@
 import { emptyBox } from '../card';
 import type { EventData, ReportData, Stay, TrackData } from '../data';
 import { el } from '../dom';
-import { bracket, columnScale, count, inScale, instant, plural, setting } from '../numbers/format';
+import { bracket, columnScale, count, inScale, instant, known, plural, setting, unknown } from '../numbers/format';
 import { drawTable, type DrawnTable, type TableColumn } from '../tables';
 
 const open = (stay: Stay): boolean => stay.open_at_start || stay.open_at_end;
@@ -35,6 +35,10 @@ function stayColumns<Row extends Stay>(rows: readonly Row[], data: ReportData): 
 
 const yes = (value: boolean): string => (value ? 'yes' : 'no');
 
+// Without a gap nothing is in it, but nothing is outside either.
+const inGap = (stay: Stay, data: ReportData): boolean | null => (known(data.run.gap.tip_radius) ? stay.peak_in_gap : null);
+const yesOrUnknown = (value: boolean | null): string => (value === null ? unknown : yes(value));
+
 function members(event: EventData): string {
   const named = event.members.join(', ');
   return event.member_count > event.members.length ? `${named}, … (${count(event.member_count)})` : named;
@@ -56,7 +60,7 @@ export function drawEvents(data: ReportData, show: (event: EventData) => void): 
     { title: 'Event', name: 'event', text: (r) => String(r.number), value: (r) => r.number },
     ...stayColumns(rows, data),
     { title: 'Grain', name: 'peak_particle', hint: 'Id of the grain with the peak force', text: (r) => String(r.peak_particle), value: (r) => r.peak_particle },
-    { title: 'In gap', name: 'peak_in_gap', hint: 'That grain sits in the gap', text: (r) => yes(r.peak_in_gap), value: (r) => r.peak_in_gap, left: true },
+    { title: 'In gap', name: 'peak_in_gap', hint: 'That grain sits in the gap', text: (r) => yesOrUnknown(inGap(r, data)), value: (r) => inGap(r, data), left: true },
     { title: 'Bridged', name: 'bridged', hint: 'A cluster carried force from blade to vessel', text: (r) => yes(r.bridged), value: (r) => r.bridged, left: true },
     { title: 'Members', name: 'members', hint: 'Grains jammed at some time during the event', text: (r) => count(r.member_count), value: (r) => r.member_count },
     { title: 'Ids of members', name: 'member_ids', text: members, value: members, left: true },
@@ -91,7 +95,7 @@ export function drawTracks(data: ReportData): HTMLElement {
     { title: `Height (${place.unit})`, name: 'height_m', hint: 'z at the peak', text: (r) => inScale(r.height, place, 4), value: (r) => r.height },
     { title: `Path (${path.unit})`, name: 'path_m', hint: 'Distance travelled while jammed', text: (r) => inScale(r.path, path), value: (r) => r.path },
     { title: `Mean speed (${speed.unit})`, name: 'mean_speed_m_per_s', text: (r) => inScale(r.mean_speed, speed), value: (r) => r.mean_speed },
-    { title: 'In gap', name: 'peak_in_gap', text: (r) => yes(r.peak_in_gap), value: (r) => r.peak_in_gap, left: true },
+    { title: 'In gap', name: 'peak_in_gap', text: (r) => yesOrUnknown(inGap(r, data)), value: (r) => inGap(r, data), left: true },
     { title: 'Record', name: 'record', text: record, value: record, left: true },
   ];
   columns.unshift({ title: 'Grain', name: 'particle', text: (r) => String(r.particle), value: (r) => r.particle });

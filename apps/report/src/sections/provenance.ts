@@ -1,7 +1,7 @@
 // Where the numbers come from: program, run, case, materials, criteria.
 import type { ReportData } from '../data';
 import { el } from '../dom';
-import { known, percent, setting, unknown, withUnit } from '../numbers/format';
+import { duration, known, scientific, setting, unknown } from '../numbers/format';
 
 type Pair = [string, string];
 
@@ -32,13 +32,13 @@ export function drawProvenance(data: ReportData): HTMLElement {
     ['Written (UTC)', run.created_utc],
     ['Command', words(run.argv)],
     ['Seed', run.case_toml === '' && run.seed === '0' ? '' : run.seed],
-    ['Time step', withUnit(run.dt, 's')],
+    ['Time step', setting(run.dt, 's')],
     ['Gravity', run.gravity.every(known) ? `(${run.gravity.map((g) => setting(g, '')).join(', ')}) m/s²` : ''],
-    ['Sampling interval', withUnit(data.headline.sampling_interval, 's')],
-    ['Length of the record', withUnit(data.headline.observed_time, 's')],
-    ['Window of the series', data.series ? withUnit(data.series.window, 's') : 'no series in this data'],
-    ['Blade tip radius', withUnit(run.gap.tip_radius, 'm', 5)],
-    ['Vessel radius', withUnit(run.gap.vessel_radius, 'm', 5)],
+    ['Sampling interval', setting(data.headline.sampling_interval, 's')],
+    ['Length of the record', setting(data.headline.observed_time, 's')],
+    ['Window of the series', data.series ? setting(data.series.window, 's') : 'no series in this data'],
+    ['Blade tip radius', setting(run.gap.tip_radius, 'm')],
+    ['Vessel radius', setting(run.gap.vessel_radius, 'm')],
     ['Case file, SHA-256', run.case_sha256],
   ]));
   if (data.derived.length > 0) add('Derived numbers', pairs(data.derived.map((d): Pair => [d.name, `${d.value} ${d.unit}`.trim()])));
@@ -46,7 +46,7 @@ export function drawProvenance(data: ReportData): HTMLElement {
     ['Compressive force of a grain', criteria.measure],
     ['Jammed above', setting(criteria.jam_force, 'N')],
     ['Load path: contacts above', known(criteria.bridge_contact_share)
-      ? `${percent(criteria.bridge_contact_share)} of it (${withUnit(criteria.bridge_contact_share * criteria.jam_force, 'N')})` : ''],
+      ? `${setting(criteria.bridge_contact_share * 100, '%')} of it (${setting(criteria.bridge_contact_share * criteria.jam_force, 'N')})` : ''],
     ['Margin of the gap', known(criteria.gap_margin) ? `${setting(criteria.gap_margin, '')} grain diameters` : ''],
     ['Survival classes end at', criteria.survival_classes.filter(known).map((b) => setting(b, 's')).join(', ')],
   ]));
@@ -64,8 +64,8 @@ export function drawProvenance(data: ReportData): HTMLElement {
     ['Written (UTC)', report.created_utc],
     ['Command', words(report.command_line)],
     ['Machine', report.machine],
-    ['Computing time', withUnit(report.wall_seconds, 's')],
-    ['Speed', known(report.particle_steps_per_second) ? `${withUnit(report.particle_steps_per_second, 'particle steps/s')}` : ''],
+    ['Computing time', duration(report.wall_seconds)],
+    ['Speed', known(report.particle_steps_per_second) ? `${scientific(report.particle_steps_per_second)} particle steps per second` : ''],
   ]));
   section.append(run.case_toml === ''
     ? el('p', { class: 'caption' }, 'This data came without a case file.')
