@@ -12,7 +12,7 @@ export function drawConventions(data: ReportData): HTMLElement {
     ['Jam event', 'A run of consecutive frames in each of which at least one grain is jammed, whichever grain that is. ' +
       'Tracks follow each grain by itself, so one event may hold several tracks.'],
     ['Survival time', `Of n samples that are D apart${known(d) ? ` (here D = ${setting(d, 's')})` : ''}: n D. The true duration lies in the ` +
-      'bracket ((n − 1) D, (n + 1) D); n D is right on average. An event that an end of the record cuts has no upper limit: only "more than" is known.'],
+      'bracket ((n − 1) D, (n + 1) D); n D is right on average. An event cut by an end of the record, or by missing frames, has no upper limit: only "more than" is known.'],
     ['Jammed share of time', 'Sum of the survival times over the length of the record, which is frames times D.'],
     ['Interval of a rate', 'Garwood: the exact 95 % interval of a Poisson count, divided by the length of the record. ' +
       'Jams that trigger each other make the true uncertainty larger; repeat runs with other seeds to see it.'],

@@ -20,7 +20,7 @@ export function tiles(data: ReportData): Tile[] {
       name: `Jam events above ${threshold}`,
       value: count(h.events),
       note: h.frames === 0 ? 'the record holds no frames' : h.events === 0 ? `no jam in ${plural(h.frames, 'frame')}`
-        : h.censored > 0 ? `${count(h.censored)} of them cut by an end of the record` : 'all begin and end within the record',
+        : h.censored > 0 ? `${count(h.censored)} cut by a record end or missing frames` : 'all begin and end within the record',
     },
     {
       name: 'Jam frequency',
