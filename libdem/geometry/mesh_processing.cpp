@@ -62,7 +62,7 @@ TriangleMesh from_cgal(const Mesh& mesh) {
     std::array<std::uint32_t, 3> t{};
     std::size_t k = 0;
     for (const Mesh::Vertex_index v : mesh.vertices_around_face(mesh.halfedge(f))) t[k++] = number[v];
-    std::ranges::rotate(t, std::ranges::min_element(t));
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     triangles.emplace_back(t, labels[f]);
   }
   std::ranges::sort(triangles);

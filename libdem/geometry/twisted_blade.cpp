@@ -228,4 +228,23 @@ BladeExtent blade_extent(const TriangleMesh& mesh) {
   return e;
 }
 
+void label_tips(TriangleMesh& mesh) {
+  constexpr double tip_fraction = 0.98;
+  const double cosine = std::cos(30 * std::numbers::pi / 180);
+  const auto radius = [&](std::uint32_t v) { return std::hypot(mesh.vertices[v].x(), mesh.vertices[v].y()); };
+  double largest = 0;
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) largest = std::max(largest, radius(v));
+  mesh.labels.assign(mesh.triangles.size(), FacetLabel::face);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    if (std::min({radius(a), radius(b), radius(c)}) < tip_fraction * largest) continue;
+    const auto& v = mesh.vertices;
+    const Vec3 normal = (v[b] - v[a]).cross(v[c] - v[a]);
+    Vec3 outward = v[a] + v[b] + v[c];
+    outward.z() = 0;
+    if (normal.dot(outward) > cosine * normal.norm() * outward.norm()) mesh.labels[i] = FacetLabel::tip;
+  }
+}
+
 }  // namespace dem

@@ -40,4 +40,8 @@ struct BladeExtent {
 };
 BladeExtent blade_extent(const TriangleMesh& mesh);
 
+// For meshes from files: labels as tip every triangle of which all corners lie beyond 0.98 of the largest distance from
+// the z axis and whose normal is within 30 degrees of pointing away from it; the rest as face.
+void label_tips(TriangleMesh& mesh);
+
 }  // namespace dem

@@ -5,6 +5,7 @@
 #include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -184,20 +185,34 @@ void validate_mesh(const TriangleMesh& mesh, const std::string& name) {
 
 namespace {
 
-// Maps each vertex to the first one (by number) that it is merged into. Vertices are compared along x, so that only
-// those in a slab of `distance` are looked at.
+// Names each vertex by the first one (by number) that it is merged into. Equal vertices are found by sorting; the rest
+// are sorted into cells as wide as the merge distance, and the first vertex of a cell stands for all in it, so that
+// even a million vertices in one place take no time.
 std::vector<std::uint32_t> merge_map(const std::vector<Vec3>& vertices, double distance) {
-  std::vector<std::uint32_t> order(vertices.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, {},
-                    [&](std::uint32_t v) { return std::tuple(vertices[v].x(), vertices[v].y(), vertices[v].z(), v); });
+  constexpr double smallest_distance = 1e-15;  // m; keeps cell numbers within 64 bits
   Components groups(vertices.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    for (std::size_t j = i + 1; j < order.size(); ++j) {
-      const Vec3 &a = vertices[order[i]], &b = vertices[order[j]];
-      if (b.x() - a.x() > distance || (distance == 0 && b != a)) break;
-      if ((b - a).squaredNorm() <= distance * distance) groups.join(order[i], order[j]);
+  if (distance < smallest_distance) {
+    std::vector<std::uint32_t> order(vertices.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::sort(
+        order, {}, [&](std::uint32_t v) { return std::tuple(vertices[v].x(), vertices[v].y(), vertices[v].z(), v); });
+    for (std::size_t i = 1; i < order.size(); ++i)
+      if (vertices[order[i]] == vertices[order[i - 1]]) groups.join(order[i - 1], order[i]);
+    return groups.names();
+  }
+  using Cell = std::array<std::int64_t, 3>;
+  std::map<Cell, std::uint32_t> first_in_cell;
+  for (std::uint32_t v = 0; v < vertices.size(); ++v) {
+    const Vec3 scaled = vertices[v] / distance;
+    const Cell cell{std::llround(scaled.x()), std::llround(scaled.y()), std::llround(scaled.z())};
+    const auto [own, is_first] = first_in_cell.try_emplace(cell, v);
+    groups.join(own->second, v);
+    for (int n = 0; is_first && n < 27; ++n) {
+      const auto near = first_in_cell.find({cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1});
+      if (near != first_in_cell.end() && (vertices[near->second] - vertices[v]).norm() <= distance)
+        groups.join(near->second, v);
     }
+  }
   return groups.names();
 }
 
@@ -220,7 +235,7 @@ void drop_unused_vertices(MeshRepair& repair) {
 
 }  // namespace
 
-MeshRepair repair_mesh(const TriangleMesh& mesh, double merge_distance) {
+MeshRepair weld_mesh(const TriangleMesh& mesh, double merge_distance) {
   check_indices({mesh, "to be repaired"});
   MeshRepair repair;
   const std::vector<std::uint32_t> merged = merge_map(mesh.vertices, std::max(merge_distance, 0.));
@@ -243,6 +258,11 @@ MeshRepair repair_mesh(const TriangleMesh& mesh, double merge_distance) {
     }
   }
   drop_unused_vertices(repair);
+  return repair;
+}
+
+MeshRepair repair_mesh(const TriangleMesh& mesh, double merge_distance) {
+  MeshRepair repair = weld_mesh(mesh, merge_distance);
   std::vector<char> turned(repair.mesh.triangles.size(), 0);
   for (const std::uint32_t t : orient_consistently(repair.mesh)) turned[t] = 1;
   const std::vector<std::uint32_t> component = triangle_components(repair.mesh);

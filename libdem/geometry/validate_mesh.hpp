@@ -24,10 +24,13 @@ struct MeshRepair {
   std::size_t unused_vertices = 0;       // dropped
 };
 
-// Mends what has one obvious mending: vertices closer than merge_distance (m; 0: equal ones only) are made one, useless
-// triangles and vertices are dropped, and triangles are turned round until neighbours agree and each component encloses
-// a positive volume. Holes and crossings are left for validate_mesh to report. Throws GeometryError for vertex numbers
-// out of range or coordinates that are not finite.
+// Vertices in a cluster no wider than merge_distance (m; 0: equal ones only) are made one; triangles without area (see
+// above), repeated triangles and unused vertices are dropped. Throws GeometryError for vertex numbers out of range or
+// coordinates that are not finite.
+MeshRepair weld_mesh(const TriangleMesh& mesh, double merge_distance = 0);
+
+// Mends what has one obvious mending: weld_mesh, then triangles are turned round until neighbours agree and each
+// component encloses a positive volume. Holes and crossings are left for validate_mesh to report.
 MeshRepair repair_mesh(const TriangleMesh& mesh, double merge_distance = 0);
 
 }  // namespace dem
