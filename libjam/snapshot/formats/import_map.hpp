@@ -19,13 +19,15 @@ struct ImportUnits {
 };
 
 // Name of a field -> name of the column that holds it. Known fields, (r) = required:
-//   particles      id(r) x(r) y(r) z(r) radius(r) | diameter, vx vy vz, wx wy wz, material, fx fy fz (total force)
-//   pair_contacts  id1(r) id2(r), normal force on id1 as a vector fn_x fn_y fn_z or as a number fn > 0 repulsive,
-//                  ft_x ft_y ft_z (on id1), overlap | distance (of the centres)
-//   wall_contacts  id(r), fn_x fn_y fn_z (on the particle) or fn; mesh (number, see ImportWall::mesh_id) or wall
-//   (name),
-//                  facet (triangle), px py pz (contact point), nx ny nz, ft_x ft_y ft_z, overlap
-//   wall_loads     time(r), fx fy fz tx ty tz (on the wall)
+//   particles      id(r) x(r) y(r) z(r), radius or diameter(r), vx vy vz, wx wy wz, material, fx fy fz (total force)
+//   pair_contacts  id1(r) id2(r); the force on id1 as f_x f_y f_z (all of it) or its normal part fn_x fn_y fn_z or fn
+//                  (a number, > 0 repulsive)(r); ft_x ft_y ft_z (on id1), overlap or distance (of the centres)
+//   wall_contacts  id(r); the force on the particle as f_x.. or fn_x.. or fn(r), ft_x ft_y ft_z; mesh (a number, see
+//                  ImportWall::mesh_id) or wall (a name), facet (triangle), px py pz (contact point), nx ny nz (from
+//                  the particle to the wall), overlap
+//   wall_arrays    id(r)
+//   wall_loads     time(r) fx(r) fy(r) fz(r) tx(r) ty(r) tz(r), on the wall
+// csv files also have frame(r), and their particles time.
 using ColumnMap = std::map<std::string, std::string>;
 
 // One kind of input. A file is of this kind when its header has every column of the map and, where `file` is not empty,
