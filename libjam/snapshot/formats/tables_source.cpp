@@ -8,6 +8,7 @@
 
 #include "libjam/errors.hpp"
 #include "libjam/snapshot/formats/assemble.hpp"
+#include "libjam/snapshot/validate.hpp"
 
 namespace jam {
 namespace {
@@ -59,7 +60,9 @@ struct Frames {
     tables.pairs = table(TableKind::pair_contacts, list[frame].step);
     tables.walls = table(TableKind::wall_contacts, list[frame].step);
     tables.arrays = table(TableKind::wall_arrays, list[frame].step);
-    return assemble(tables, map, info, check);
+    Snapshot snapshot = assemble(tables, map, info, check);
+    validate(snapshot, info, tables.particles.path + ":step " + std::to_string(list[frame].step));
+    return snapshot;
   }
 };
 
@@ -211,6 +214,7 @@ SnapshotSource open_tables(FrameCursor::Syntax syntax, const std::vector<TableFi
 
   SnapshotSource source;
   source.frames = particles.size();
+  validate(frames->info, map.origin.empty() ? "map" : map.origin);
   FrameCheck first, last;
   frames->read(0, &first);
   report(first, particles.front().step, map, source.warnings);
@@ -218,7 +222,10 @@ SnapshotSource open_tables(FrameCursor::Syntax syntax, const std::vector<TableFi
     frames->read(source.frames - 1, &last);
     report(last, particles.back().step, map, source.warnings);
   }
-  if (!load_series.empty()) source.series = read_load_series(load_series, map);
+  if (!load_series.empty()) {
+    source.series = read_load_series(load_series, map);
+    validate(source.series, frames->info, load_series);
+  }
   frames->info.wall_loads_known = first.loads_known;
   source.info = frames->info;
   source.read = [frames](std::size_t frame) { return frames->read(frame); };

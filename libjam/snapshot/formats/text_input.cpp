@@ -128,10 +128,13 @@ void LineReader::fail(const std::string& problem) const {
   throw DataError(path_ + ":" + std::to_string(line_number_) + ": " + problem);
 }
 
+bool is_hdf5(const InputHead& head) {
+  return starts_with(head.bytes, "\x89HDF\r\n\x1a\n");
+}
+
 InputHead read_head(const std::string& path) {
-  using namespace std::string_view_literals;
   InputHead head{path, first_bytes(path), {}};
-  if (starts_with(head.bytes, "\x89HDF\r\n\x1a\n"sv)) return head;
+  if (is_hdf5(head)) return head;
   LineReader reader(path);
   std::string_view line;
   while (head.lines.size() < 32 && reader.next(line)) head.lines.emplace_back(line);

@@ -43,6 +43,7 @@ struct InputHead {
   std::vector<std::string> lines;  // at most 32
 };
 InputHead read_head(const std::string& path);
+bool is_hdf5(const InputHead& head);
 
 // Splits at blanks and tabs.
 void split_fields(std::string_view line, std::vector<std::string_view>& fields);

@@ -1,6 +1,7 @@
 #include "libjam/snapshot/formats/walls.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -62,6 +63,23 @@ WallRecord merged(const std::vector<const WallRecord*>& parts) {
   sum.tangential_force = force + sum.normal_force * sum.normal;
   sum.flags |= contact_merged;
   return sum;
+}
+
+// Factors x of least sum of squares, and among those of least norm (walls that face each other, of which only the
+// difference of the forces is known), with sum x_k n_k = target: x = N^T (N N^T)^+ target.
+std::vector<double> least_squares(const std::vector<Vec3>& normals, const Vec3& target) {
+  Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+  for (const Vec3& n : normals) square += n * n.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(square);
+  Vec3 y = Vec3::Zero();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double value = solver.eigenvalues()[k];
+    const Vec3 direction = solver.eigenvectors().col(k);
+    if (value > 1e-9) y += direction * (direction.dot(target) / value);
+  }
+  std::vector<double> factors;
+  for (const Vec3& n : normals) factors.push_back(n.dot(y));
+  return factors;
 }
 
 }  // namespace
@@ -177,25 +195,23 @@ void recover_contacts(const std::vector<ImportWall>& walls, const std::vector<Ve
     const Vec3& force = residual[row].force;
     if (!(force.norm() > printed_precision * residual[row].magnitude)) continue;
 
-    Eigen::VectorXd pushes;
+    std::vector<double> pushes;
     for (;;) {
-      Eigen::Matrix3Xd normals(3, static_cast<Eigen::Index>(touched.size()));
-      for (std::size_t k = 0; k < touched.size(); ++k) {
-        normals.col(static_cast<Eigen::Index>(k)) = touched[k].nearest.normal;
-      }
-      // Of least norm where two walls face each other and only the difference of their forces is known.
-      pushes = normals.completeOrthogonalDecomposition().solve(Eigen::VectorXd(-force));
-      Eigen::Index lowest = 0;
-      if (touched.size() == 1 || pushes.minCoeff(&lowest) >= 0) break;
-      touched.erase(touched.begin() + lowest);
+      std::vector<Vec3> normals;
+      for (const Touched& t : touched) normals.push_back(t.nearest.normal);
+      pushes = least_squares(normals, -force);
+      const auto lowest = std::min_element(pushes.begin(), pushes.end());
+      if (touched.size() == 1 || *lowest >= 0) break;
+      touched.erase(touched.begin() + (lowest - pushes.begin()));
     }
     Vec3 rest = force;
     for (std::size_t k = 0; k < touched.size(); ++k) {
-      rest += pushes[static_cast<Eigen::Index>(k)] * touched[k].nearest.normal;
+      rest += pushes[k] * touched[k].nearest.normal;
     }
-    const double total = pushes.cwiseAbs().sum();
+    double total = 0;
+    for (const double push : pushes) total += std::abs(push);
     for (std::size_t k = 0; k < touched.size(); ++k) {
-      const double push = pushes[static_cast<Eigen::Index>(k)];
+      const double push = pushes[k];
       WallRecord record;
       record.row = static_cast<std::uint32_t>(row);
       record.wall = static_cast<std::uint8_t>(touched[k].wall);
