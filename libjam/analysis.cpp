@@ -15,22 +15,21 @@
 #include "libjam/jamming/jam_clusters.hpp"
 #include "libjam/metrics/coordination.hpp"
 #include "libjam/metrics/coordination_with_walls.hpp"
+#include "libjam/snapshot/validate.hpp"
 #include "libjam/statistics/jam_counts.hpp"
 
 namespace jam {
 namespace {
 
 void check_frame(const Snapshot& snapshot, const RunInfo& info, const std::vector<FrameSummary>& before) {
-  std::ostringstream problem;
-  if (!std::isfinite(snapshot.time)) {
-    problem << "its time is not finite";
-  } else if (!before.empty() && snapshot.time <= before.back().time) {
-    problem << "its time " << snapshot.time << " s follows " << before.back().time << " s, expected increasing times";
-  } else if (snapshot.walls.size() != info.walls.size()) {
-    problem << "it has " << snapshot.walls.size() << " wall states, expected one for each of " << info.walls.size()
-            << " walls";
+  const std::string place = "frame " + std::to_string(before.size());
+  validate(snapshot, info, place);
+  if (!before.empty() && snapshot.time <= before.back().time) {
+    std::ostringstream problem;
+    problem << place << ": time " << snapshot.time << " s follows " << before.back().time
+            << " s, expected increasing times";
+    throw DataError(problem.str());
   }
-  if (!problem.str().empty()) throw DataError("frame " + std::to_string(before.size()) + ": " + problem.str());
 }
 
 FrameSummary summarize(const ContactGraph& graph, const std::vector<double>& compressive_force,
@@ -181,12 +180,9 @@ Analysis Pipeline::finish(const Series& series) const {
       std::all_of(frame_power_.begin(), frame_power_.end(), [](double p) { return std::isfinite(p); });
   if (frame_power_.empty() || !power_known || !blade_moved_) {
     a.flow_energy.source = "none";
-    const char* reason = "the velocity of the blade is zero in every frame";
-    if (!power_known) {
-      reason = info_.wall_loads_known ? "a force or torque on the blade is not finite"
-                                      : "contacts with the blade have neither point nor normal";
-    }
-    note("no flow energy: ", frame_power_.empty() ? "there are no frames" : reason);
+    note("no flow energy: ", frame_power_.empty() ? "there are no frames"
+                             : !power_known       ? "contacts with the blade have neither point nor normal"
+                                                  : "the velocity of the blade is zero in every frame");
     return a;
   }
   std::vector<double> time;

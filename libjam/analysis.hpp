@@ -60,7 +60,7 @@ class Pipeline {
  public:
   // Throws CriteriaError where an option is out of range, or info has no wall of role blade or none of role vessel.
   Pipeline(const RunInfo& info, const Criteria& criteria);
-  // Frames must come in strictly increasing time and keep the contract of snapshot.hpp; throws DataError otherwise, and
+  // Frames must come in strictly increasing time and pass validate(); throws DataError otherwise, and
   // the pipeline is as before. Returns the new frame's summary.
   const FrameSummary& add(const Snapshot& snapshot);
   std::size_t frames() const { return analysis_.frames.size(); }

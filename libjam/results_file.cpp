@@ -1,6 +1,7 @@
 #include "libjam/results_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 #include "libjam/errors.hpp"
@@ -10,7 +11,8 @@ namespace jam {
 namespace {
 
 constexpr const char* format_name = "jamscope-analysis";
-constexpr const char* schema_version = "1.0";
+using Version = std::array<std::uint32_t, 2>;
+constexpr Version schema_version{1, 0};  // a larger second number only adds items
 
 // The columns of each table are listed once, in a function that hands name, member, unit and doc to a visitor. Writing
 // and reading are two visitors, so they cannot disagree. To store one more member: add its line to the list.
@@ -351,8 +353,11 @@ Analysis read_results(const std::filesystem::path& path) {
   if (!file.has_attribute("/", "format") || file.attribute<std::string>("/", "format") != format_name) {
     file.fail("/", std::string("not an analysis result, expected the attribute format = \"") + format_name + "\"");
   }
-  const auto version = file.attribute<std::string>("/", "schema_version");
-  if (!version.starts_with("1.")) file.fail("/", "schema_version is " + version + ", expected 1.x");
+  const auto version = file.attribute<Version>("/", "schema_version");
+  if (version[0] != schema_version[0]) {
+    file.fail("/", "schema version " + std::to_string(version[0]) + "." + std::to_string(version[1]) + ", expected " +
+                       std::to_string(schema_version[0]) + ".x");
+  }
   Analysis analysis;
   analysis.criteria = read_criteria(file);
   read_scalars(file, "/summary", analysis);

@@ -25,9 +25,8 @@ class ContactGraph {
     std::uint32_t contact;  // index into Snapshot::pp
   };
 
-  // Refers to the snapshot, which must outlive the graph. `walls` are RunInfo::walls. Throws DataError where the
-  // snapshot breaks its own contract: columns of different length, ids or contacts not strictly ascending, a row or a
-  // wall that does not exist, a force or a radius that is not a number.
+  // Refers to the snapshot, which must outlive the graph. `walls` are RunInfo::walls. The snapshot must have passed
+  // validate() (libjam/snapshot/validate.hpp): every source of stored frames and Pipeline::add see to that.
   ContactGraph(const Snapshot& snapshot, const std::vector<Wall>& walls);
   ContactGraph(Snapshot&&, const std::vector<Wall>&) = delete;
 

@@ -188,6 +188,12 @@ TEST(PipelineTest, RefusesFramesThatDoNotFitAndStaysAsItWas) {
   EXPECT_THROW(pipeline.add(frames[3]), DataError);
   frames[4].pp.row[0] = {0, 5};
   EXPECT_THROW(pipeline.add(frames[4]), DataError);
+  frames[5].particles.id[1] = 1;
+  EXPECT_THROW(pipeline.add(frames[5]), DataError);
+  frames[7].pw.wall[0] = 3;
+  EXPECT_THROW(pipeline.add(frames[7]), DataError);
+  frames[8].particles.radius.pop_back();
+  EXPECT_THROW(pipeline.add(frames[8]), DataError);
   EXPECT_EQ(pipeline.frames(), 1u);
   EXPECT_EQ(pipeline.finish({}).frames.size(), 1u);
 }

@@ -6,11 +6,8 @@
 #include <boost/graph/breadth_first_search.hpp>
 #include <boost/graph/connected_components.hpp>
 #include <boost/graph/graph_concepts.hpp>
-#include <cmath>
-#include <limits>
 #include <set>
 
-#include "libjam/errors.hpp"
 #include "libjam/graph/boost_adaptor.hpp"
 #include "tests/jam/graph/hand_made_network.hpp"
 
@@ -24,7 +21,6 @@ using hand_made::Network;
 using hand_made::random_network;
 using hand_made::vessel_wall;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 //   blade |o 2 -- o 5 -- o 9| vessel        (5 also stands on the floor)
 Snapshot chain_of_three() {
@@ -89,51 +85,6 @@ TEST(ContactGraphTest, IsEmptyForAnEmptyFrame) {
   EXPECT_EQ(graph.vertex_count(), 0u);
   EXPECT_EQ(graph.edge_count(), 0u);
 }
-
-struct BrokenFrame {
-  const char* name;
-  void (*break_it)(Snapshot&);
-  const char* message;
-};
-
-class ContactGraphGateTest : public ::testing::TestWithParam<BrokenFrame> {};
-
-TEST_P(ContactGraphGateTest, RefusesAFrameThatBreaksItsContract) {
-  Snapshot snapshot = chain_of_three();
-  GetParam().break_it(snapshot);
-  try {
-    const ContactGraph graph(snapshot, hand_made_run().walls);
-    FAIL() << "expected a DataError";
-  } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr(GetParam().message));
-  }
-}
-
-constexpr float nan_force = std::numeric_limits<float>::quiet_NaN();
-
-INSTANTIATE_TEST_SUITE_P(
-    Frames, ContactGraphGateTest,
-    ::testing::Values(
-        BrokenFrame{"UnknownRow",
-                    [](Snapshot& s) {
-                      s.pp.row[1] = {1, 3};
-                    },
-                    "pp/row[1] = {1, 3}"},
-        BrokenFrame{"SelfContact",
-                    [](Snapshot& s) {
-                      s.pp.row[1] = {2, 2};
-                    },
-                    "pp/row[1]"},
-        BrokenFrame{"RepeatedContact", [](Snapshot& s) { s.pp.row[1] = s.pp.row[0]; }, "out of order or repeated"},
-        BrokenFrame{"MissingForces", [](Snapshot& s) { s.pp.normal_force.pop_back(); }, "pp/normal_force has 1"},
-        BrokenFrame{"ForceNotANumber", [](Snapshot& s) { s.pp.normal_force[0] = nan_force; }, "pp contact 0"},
-        BrokenFrame{"WallForceNotANumber", [](Snapshot& s) { s.pw.normal_force[2] = nan_force; }, "pw contact 2"},
-        BrokenFrame{"UnknownWall", [](Snapshot& s) { s.pw.wall[0] = 3; }, "pw/wall[0] = 3"},
-        BrokenFrame{"WallContactOfNobody", [](Snapshot& s) { s.pw.row[3] = 77; }, "pw/row[3] = 77"},
-        BrokenFrame{"IdTwice", [](Snapshot& s) { s.particles.id[1] = 2; }, "id[1] = 2 after 2"},
-        BrokenFrame{"MissingPosition", [](Snapshot& s) { s.particles.position.pop_back(); }, "particles/position"},
-        BrokenFrame{"NoRadius", [](Snapshot& s) { s.particles.radius[1] = 0; }, "radius of id 5"}),
-    [](const auto& test) { return test.param.name; });
 
 BOOST_CONCEPT_ASSERT((boost::VertexListGraphConcept<ContactGraph>));
 BOOST_CONCEPT_ASSERT((boost::BidirectionalGraphConcept<ContactGraph>));
