@@ -1,0 +1,23 @@
+// The one hot loop: every contact of the run through its law. Templated on the law, instantiated from the table in laws.hpp.
+#pragma once
+#include "libdem/contact/contact_store.hpp"
+
+namespace dem {
+
+struct ForceInput {
+  const Particles& particles;
+  const std::vector<double>& mass;  // [N] kg
+  const MaterialTable& materials;
+  const std::vector<Wall>& walls;
+  const std::vector<WallPose>& poses;  // [walls]
+  double spring_dt;                    // s, by how much tangential springs advance
+  double dt;                           // s, of the step
+  std::uint64_t step;
+};
+
+// Evaluates all contacts with the law in row `law` of the table; memory and results of the stores change. Returns the
+// largest overlap over the smaller radius. Results do not depend on the number of threads. Throws PhysicsError where a
+// sphere touches one wall in more places than WallCandidate::capacity.
+double evaluate_contacts(std::size_t law, const ForceInput& in, PairContacts& pairs, WallContacts& walls);
+
+}  // namespace dem

@@ -1,0 +1,62 @@
+// The number types that the contact law is written for: double, and a pack of doubles that one instruction handles at once.
+// The law's templates use only what is named here, so that one text serves both.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <experimental/simd>
+
+namespace dem {
+
+using Pack = std::experimental::native_simd<double>;
+inline constexpr std::size_t pack_width = Pack::size();
+
+// mask ? a : b, lane by lane. Both sides are evaluated; neither may trap.
+inline double select(bool mask, double a, double b) { return mask ? a : b; }
+inline Pack select(const Pack::mask_type& mask, const Pack& a, const Pack& b) {
+  Pack r = b;
+  std::experimental::where(mask, r) = a;
+  return r;
+}
+
+inline double square_root(double a) { return std::sqrt(a); }
+inline Pack square_root(const Pack& a) { return std::experimental::sqrt(a); }
+inline double larger(double a, double b) { return a > b ? a : b; }
+inline Pack larger(const Pack& a, const Pack& b) { return select(a > b, a, b); }
+inline double smaller(double a, double b) { return a < b ? a : b; }
+inline Pack smaller(const Pack& a, const Pack& b) { return select(a < b, a, b); }
+
+template <class Real>
+using Mask = decltype(Real() < Real());
+
+// Three components of a number type. Eigen's matrices expect comparisons to give one bool, which a pack cannot.
+template <class Real>
+struct Triple {
+  Real x, y, z;
+};
+
+template <class Real>
+Triple<Real> operator+(const Triple<Real>& a, const Triple<Real>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class Real>
+Triple<Real> operator-(const Triple<Real>& a, const Triple<Real>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class Real>
+Triple<Real> operator*(const Triple<Real>& a, const Real& s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+template <class Real>
+Real dot(const Triple<Real>& a, const Triple<Real>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class Real>
+Triple<Real> cross(const Triple<Real>& a, const Triple<Real>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class Real>
+Triple<Real> select(const Mask<Real>& mask, const Triple<Real>& a, const Triple<Real>& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+}  // namespace dem

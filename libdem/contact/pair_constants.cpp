@@ -1,0 +1,24 @@
+#include "libdem/contact/pair_constants.hpp"
+
+namespace dem {
+
+MaterialTable make_material_table(const std::vector<Material>& materials,
+                                  const std::vector<std::vector<Interaction>>& interactions) {
+  MaterialTable table{materials.size(), {}};
+  for (std::size_t a = 0; a < materials.size(); ++a) {
+    for (std::size_t b = 0; b < materials.size(); ++b) {
+      PairConstants<double> c{};
+      const Interaction& law = interactions[a][b];
+      c.effective_modulus = effective_modulus(materials[a], materials[b]);
+      c.effective_shear = effective_shear(materials[a], materials[b]);
+      c.damping_ratio = damping_ratio(law.restitution);
+      c.friction = law.friction;
+      c.rolling_friction = law.rolling_friction;
+      c.work_of_adhesion = law.work_of_adhesion;
+      table.pair.push_back(c);
+    }
+  }
+  return table;
+}
+
+}  // namespace dem

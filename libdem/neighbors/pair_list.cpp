@@ -1,0 +1,108 @@
+#include "libdem/neighbors/pair_list.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace dem {
+namespace {
+
+using Cell = std::array<std::int64_t, 3>;
+
+// Grains sorted by cell, cells numbered row by row over the bounding box. Where the box holds many more cells than grains
+// (a few stray grains far away), cells are made larger until their number is in proportion.
+struct Grid {
+  Vec3 low = Vec3::Zero();
+  double edge = 1;
+  Cell cells{1, 1, 1};
+  std::vector<std::uint32_t> begin, member;
+
+  Cell cell_of(const Vec3& x) const {
+    Cell c;
+    for (std::size_t k = 0; k < 3; ++k)
+      c[k] = std::clamp<std::int64_t>(std::int64_t((x[Eigen::Index(k)] - low[Eigen::Index(k)]) / edge), 0, cells[k] - 1);
+    return c;
+  }
+  std::size_t index(const Cell& c) const { return std::size_t((c[2] * cells[1] + c[1]) * cells[0] + c[0]); }
+};
+
+Grid make_grid(const std::vector<Vec3>& position, double edge) {
+  Grid grid;
+  const std::size_t n = position.size();
+  Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  grid.low = -high;
+  for (const Vec3& x : position) {
+    grid.low = grid.low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  const Vec3 size = high - grid.low;
+  const double most = 8.0 * double(n) + 64;
+  grid.edge = edge;
+  while ((std::floor(size.x() / grid.edge) + 1) * (std::floor(size.y() / grid.edge) + 1) *
+             (std::floor(size.z() / grid.edge) + 1) > most)
+    grid.edge *= 1.5;
+  for (std::size_t k = 0; k < 3; ++k) grid.cells[k] = std::int64_t(std::floor(size[Eigen::Index(k)] / grid.edge)) + 1;
+  const std::size_t total = std::size_t(grid.cells[0] * grid.cells[1] * grid.cells[2]);
+  grid.begin.assign(total + 1, 0);
+  std::vector<std::uint32_t> cell(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    cell[i] = std::uint32_t(grid.index(grid.cell_of(position[i])));
+    ++grid.begin[cell[i] + 1];
+  }
+  for (std::size_t c = 0; c < total; ++c) grid.begin[c + 1] += grid.begin[c];
+  grid.member.resize(n);
+  std::vector<std::uint32_t> next(grid.begin.begin(), grid.begin.end() - 1);
+  for (std::size_t i = 0; i < n; ++i) grid.member[next[cell[i]]++] = std::uint32_t(i);
+  return grid;
+}
+
+}  // namespace
+
+PairList build_pair_list(const std::vector<Vec3>& position, const std::vector<double>& radius, double skin) {
+  PairList list;
+  const std::size_t n = position.size();
+  list.begin.assign(n + 1, 0);
+  list.incoming_begin.assign(n + 1, 0);
+  if (n == 0) return list;
+  const double largest = *std::max_element(radius.begin(), radius.end());
+  const Grid grid = make_grid(position, 2 * largest + skin);
+
+  std::vector<std::vector<std::uint32_t>> partners(n);
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < n; ++i) {
+    const Cell c = grid.cell_of(position[i]);
+    auto& mine = partners[i];
+    const auto low = [&](std::size_t k) { return std::max<std::int64_t>(c[k] - 1, 0); };
+    const auto high = [&](std::size_t k) { return std::min(c[k] + 1, grid.cells[k] - 1); };
+    for (std::int64_t z = low(2); z <= high(2); ++z)
+      for (std::int64_t y = low(1); y <= high(1); ++y)
+        for (std::int64_t x = low(0); x <= high(0); ++x) {
+          const std::size_t k = grid.index({x, y, z});
+          for (std::uint32_t m = grid.begin[k]; m < grid.begin[k + 1]; ++m) {
+            const std::uint32_t j = grid.member[m];
+            if (j <= i) continue;
+            const double reach = radius[i] + radius[j] + skin;
+            if ((position[i] - position[j]).squaredNorm() < reach * reach) mine.push_back(j);
+          }
+        }
+    std::sort(mine.begin(), mine.end());
+  }
+
+  for (std::size_t i = 0; i < n; ++i) list.begin[i + 1] = list.begin[i] + std::uint32_t(partners[i].size());
+  list.first.resize(list.begin[n]);
+  list.second.resize(list.begin[n]);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < partners[i].size(); ++k) {
+      list.first[list.begin[i] + k] = std::uint32_t(i);
+      list.second[list.begin[i] + k] = partners[i][k];
+      ++list.incoming_begin[partners[i][k] + 1];
+    }
+  for (std::size_t j = 0; j < n; ++j) list.incoming_begin[j + 1] += list.incoming_begin[j];
+  list.incoming.resize(list.size());
+  std::vector<std::uint32_t> next(list.incoming_begin.begin(), list.incoming_begin.end() - 1);
+  for (std::uint32_t p = 0; p < list.size(); ++p) list.incoming[next[list.second[p]]++] = p;
+  return list;
+}
+
+}  // namespace dem

@@ -1,0 +1,38 @@
+// The grains: spheres as structure of arrays.
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "libdem/case/case.hpp"
+
+namespace dem {
+
+// V = (4/3) pi R^3, m^3.
+inline double sphere_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
+// I = (2/5) m R^2, kg m^2.
+inline double sphere_inertia(double mass, double radius) { return 0.4 * mass * radius * radius; }
+
+struct Particles {
+  std::vector<std::uint32_t> id;       // persistent
+  std::vector<std::uint8_t> material;  // index into the run's materials
+  std::vector<double> radius;          // m
+  std::vector<Vec3> position;          // m
+  std::vector<Vec3> velocity;          // m/s, half a step before `position`
+  std::vector<Vec3> angular_velocity;  // rad/s, likewise
+  std::size_t size() const { return id.size(); }
+
+  void add(std::uint32_t new_id, std::uint8_t new_material, double new_radius, const Vec3& x,
+           const Vec3& v = Vec3::Zero(), const Vec3& w = Vec3::Zero()) {
+    id.push_back(new_id);
+    material.push_back(new_material);
+    radius.push_back(new_radius);
+    position.push_back(x);
+    velocity.push_back(v);
+    angular_velocity.push_back(w);
+  }
+};
+
+}  // namespace dem

@@ -1,0 +1,490 @@
+#include "libdem/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "libdem/contact/forces.hpp"
+#include "libdem/contact/laws.hpp"
+#include "libdem/errors.hpp"
+#include "libdem/neighbors/pair_list.hpp"
+
+namespace dem {
+namespace {
+
+// Overlap over radius from which no contact law here means anything any more.
+constexpr double runaway_overlap = 0.5;
+// Grains of one wall that are handled as one piece of work and summed in order.
+constexpr std::uint32_t chunk_size = 32;
+// Below this many grains waking other threads costs more than they save.
+constexpr std::size_t few_grains = 200;
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+std::string place(const Particles& p, std::size_t i, double time) {
+  return "grain " + std::to_string(p.id[i]) + " at (" + number(p.position[i].x() * 1e3) + ", " +
+         number(p.position[i].y() * 1e3) + ", " + number(p.position[i].z() * 1e3) + ") mm, t = " + number(time) + " s";
+}
+
+}  // namespace
+
+struct Simulation::Engine {
+  Setup setup;
+  MaterialTable materials;
+  std::uint64_t step = 0;
+  Particles p;
+  std::vector<double> mass, inertia;
+  std::vector<Vec3> force, torque;
+  std::vector<double> compressive;
+  std::vector<Vec3> listed_position;  // where the grains were when the lists were built
+  std::vector<WallPose> poses;
+  double skin = 0;
+  double wall_travel = 0;  // m, upper bound of the walls' movement since the lists were built
+  double wall_speed = 0;   // m/s, upper bound
+  PairContacts pairs;
+  WallContacts walls;
+  std::vector<WallLoad> loads;  // [walls] of the last evaluation
+
+  Window window;
+  std::vector<Window::Load> load_sum;
+
+  Engine(Setup s, State state) : setup(std::move(s)), step(state.step), p(std::move(state.particles)) {
+    check_input();
+    materials = make_material_table(setup.materials, setup.interactions);
+    const std::size_t n = p.size();
+    mass.resize(n);
+    inertia.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      mass[i] = setup.materials[p.material[i]].density * sphere_volume(p.radius[i]);
+      inertia[i] = sphere_inertia(mass[i], p.radius[i]);
+    }
+    compressive.assign(n, 0.0);
+    // Thin enough that the lists hold little more than the contacts, thick enough that building them costs a per cent or
+    // so: a twentieth of a grain is crossed in about a thousand steps.
+    const double mean_radius = n ? std::accumulate(p.radius.begin(), p.radius.end(), 0.0) / double(n) : 1.0;
+    skin = 0.1 * mean_radius;
+    for (const Wall& w : setup.walls) wall_speed = std::max(wall_speed, largest_speed(w));
+    move_walls();
+    build_lists();
+    remember(state);
+    begin_window();
+    if (state.force.empty()) {
+      force.assign(n, Vec3::Zero());
+      torque.assign(n, Vec3::Zero());
+      evaluate(0.0);
+      sum_and_move(false);
+      sum_wall_loads();
+    } else {
+      force = std::move(state.force);
+      torque = std::move(state.torque);
+      sum_wall_loads();
+    }
+  }
+
+  void check_input() const {
+    const std::size_t n = p.size(), m = setup.materials.size();
+    if (!(setup.step > 0)) throw CaseError("the time step is " + number(setup.step) + " s, expected > 0");
+    if (setup.law >= std::tuple_size_v<ContactLaws>) throw CaseError("no such contact law");
+    if (setup.interactions.size() != m) throw CaseError("expected one row of interactions per material");
+    for (const auto& row : setup.interactions)
+      if (row.size() != m) throw CaseError("expected one interaction per pair of materials");
+    if (p.material.size() != n || p.radius.size() != n || p.position.size() != n || p.velocity.size() != n ||
+        p.angular_velocity.size() != n)
+      throw CaseError("the grains' arrays differ in length");
+    for (std::size_t i = 0; i < n; ++i)
+      if (p.material[i] >= m || !(p.radius[i] > 0) || !p.position[i].allFinite())
+        throw CaseError("grain " + std::to_string(p.id[i]) + " has no material, radius or position");
+    for (const Wall& w : setup.walls)
+      if (w.material >= m) throw CaseError("wall '" + w.name + "' has no material");
+  }
+
+  double time() const { return double(step) * setup.step; }
+
+  void move_walls() {
+    poses.resize(setup.walls.size());
+    for (std::size_t w = 0; w < poses.size(); ++w) poses[w] = pose_at(setup.walls[w].motion, time());
+  }
+
+  ForceInput force_input(double spring_dt) const {
+    return {p, mass, materials, setup.walls, poses, spring_dt, setup.step, step};
+  }
+
+  void evaluate(double spring_dt) {
+    const double overlap = evaluate_contacts(setup.law, force_input(spring_dt), pairs, walls);
+    window.largest_overlap = std::max(window.largest_overlap, overlap);
+  }
+
+  // Candidates around the present positions; memory of formed contacts is kept.
+  void build_lists() {
+    const std::size_t n = p.size();
+    PairContacts fresh;
+    fresh.list = build_pair_list(p.position, p.radius, skin);
+    const std::size_t count = fresh.list.size();
+    fresh.memory.resize(count);
+    fresh.result.resize(count);
+    fresh.bodies.resize(count);
+    fresh.material_pair.resize(count);
+#pragma omp parallel for schedule(static)
+    for (std::size_t i = 0; i < n; ++i) {
+      std::size_t old = pairs.list.begin.empty() ? 0 : pairs.list.begin[i];
+      const std::size_t old_end = pairs.list.begin.empty() ? 0 : pairs.list.begin[i + 1];
+      for (std::size_t s = fresh.list.begin[i]; s < fresh.list.begin[i + 1]; ++s) {
+        const std::uint32_t j = fresh.list.second[s];
+        const std::size_t pair = p.material[i] * materials.size + p.material[j];
+        const PairConstants<double> c =
+            pair_constants(materials.pair[pair], {p.radius[i], mass[i], inertia[i]}, {p.radius[j], mass[j], inertia[j]});
+        fresh.bodies[s] = {c.effective_radius, c.effective_mass, c.effective_inertia, c.adhesion_length};
+        fresh.material_pair[s] = std::uint32_t(pair);
+        while (old < old_end && pairs.list.second[old] < j) ++old;
+        if (old < old_end && pairs.list.second[old] == j) {
+          fresh.memory[s] = pairs.memory[old];
+          fresh.result[s] = pairs.result[old];
+        } else {
+          fresh.result[s] = PairForce{};
+        }
+      }
+    }
+    pairs = std::move(fresh);
+    build_wall_lists();
+    listed_position = p.position;
+    wall_travel = 0;
+  }
+
+  void build_wall_lists() {
+    const std::size_t n = p.size();
+    std::map<std::pair<std::uint32_t, std::uint32_t>, const WallCandidate*> old;
+    for (const WallCandidate& c : walls.candidate)
+      if (c.size > 0) old[{c.wall, c.particle}] = &c;
+    WallContacts fresh;
+    for (std::uint32_t w = 0; w < setup.walls.size(); ++w) {
+      const std::uint32_t first = std::uint32_t(fresh.candidate.size());
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const double reach = p.radius[i] + skin;
+        if (!near(setup.walls[w], poses[w], p.position[i], reach)) continue;
+        WallCandidate c{};
+        c.particle = i;
+        c.wall = w;
+        c.triangle_begin = std::uint32_t(fresh.triangles.size());
+        candidate_triangles(setup.walls[w], poses[w], p.position[i], reach, fresh.triangles);
+        c.triangle_end = std::uint32_t(fresh.triangles.size());
+        if (std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.triangle_begin == c.triangle_end) continue;
+        c.constants = wall_constants(materials(p.material[i], setup.walls[w].material),
+                                     {p.radius[i], mass[i], inertia[i]});
+        if (const auto known = old.find({w, i}); known != old.end()) {
+          c.size = known->second->size;
+          c.contact = known->second->contact;
+        }
+        fresh.candidate.push_back(c);
+      }
+      const std::uint32_t last = std::uint32_t(fresh.candidate.size());
+      for (std::uint32_t b = first; b < last; b += chunk_size) {
+        WallContacts::Chunk chunk{};
+        chunk.wall = w;
+        chunk.begin = b;
+        chunk.end = std::min(b + chunk_size, last);
+        fresh.chunk.push_back(std::move(chunk));
+      }
+    }
+    fresh.of_particle_begin.assign(n + 1, 0);
+    for (const WallCandidate& c : fresh.candidate) ++fresh.of_particle_begin[c.particle + 1];
+    for (std::size_t i = 0; i < n; ++i) fresh.of_particle_begin[i + 1] += fresh.of_particle_begin[i];
+    fresh.of_particle.resize(fresh.candidate.size());
+    std::vector<std::uint32_t> next(fresh.of_particle_begin.begin(), fresh.of_particle_begin.end() - 1);
+    for (std::uint32_t c = 0; c < fresh.candidate.size(); ++c) fresh.of_particle[next[fresh.candidate[c].particle]++] = c;
+    walls = std::move(fresh);
+  }
+
+  // Puts the memory of a stored state into the fresh lists.
+  void remember(const State& state) {
+    const std::size_t n = p.size();
+    for (const State::Pair& stored : state.pairs) {
+      if (stored.i >= n || stored.j >= n || stored.i >= stored.j)
+        throw CaseError("the stored state has a contact between grains that it does not have");
+      const auto begin = pairs.list.second.begin() + pairs.list.begin[stored.i];
+      const auto end = pairs.list.second.begin() + pairs.list.begin[stored.i + 1];
+      const auto found = std::lower_bound(begin, end, stored.j);
+      if (found == end || *found != stored.j)
+        throw CaseError("the stored state has a contact between grains that are apart");
+      pairs.memory[std::size_t(found - pairs.list.second.begin())] = {stored.spring, stored.birth_step, true};
+    }
+    for (const State::WallPair& stored : state.wall_pairs) {
+      WallCandidate* candidate = nullptr;
+      if (stored.i < n)
+        for (std::uint32_t k = walls.of_particle_begin[stored.i]; k < walls.of_particle_begin[stored.i + 1]; ++k)
+          if (walls.candidate[walls.of_particle[k]].wall == stored.wall) candidate = &walls.candidate[walls.of_particle[k]];
+      if (!candidate || candidate->size == WallCandidate::capacity)
+        throw CaseError("the stored state has a contact with a wall that is not there");
+      WallContact& contact = candidate->contact[candidate->size++];
+      contact = WallContact{};
+      contact.touch.feature = stored.feature;
+      contact.touch.normal = stored.normal;
+      contact.memory = {stored.spring, stored.birth_step, true};
+    }
+  }
+
+  // Sums the forces on every grain in a fixed order (own pairs, incoming pairs, walls) and, if asked to, moves it.
+  // Returns the square of the largest movement since the lists were built.
+  double sum_and_move(bool move) {
+    const std::size_t n = p.size();
+    const double dt = setup.step, keep = 1 - setup.drag * dt;
+    double travel2 = 0, largest_compressive = 0;
+    std::uint32_t watched = 0;
+#pragma omp parallel for schedule(static) reduction(max : travel2, largest_compressive) reduction(+ : watched) if (n > few_grains)
+    for (std::size_t i = 0; i < n; ++i) {
+      Vec3 f = mass[i] * setup.gravity, t = Vec3::Zero();
+      double pressed = 0;
+      for (std::uint32_t s = pairs.list.begin[i]; s < pairs.list.begin[i + 1]; ++s) {
+        const PairForce& r = pairs.result[s];
+        if (!r.acts) continue;
+        f += r.force;
+        t += r.torque_i;
+        pressed += std::max(r.elastic + r.damping, 0.0);
+      }
+      for (std::uint32_t k = pairs.list.incoming_begin[i]; k < pairs.list.incoming_begin[i + 1]; ++k) {
+        const PairForce& r = pairs.result[pairs.list.incoming[k]];
+        if (!r.acts) continue;
+        f -= r.force;
+        t += r.torque_j;
+        pressed += std::max(r.elastic + r.damping, 0.0);
+      }
+      for (std::uint32_t k = walls.of_particle_begin[i]; k < walls.of_particle_begin[i + 1]; ++k) {
+        const WallCandidate& candidate = walls.candidate[walls.of_particle[k]];
+        for (std::size_t c = 0; c < candidate.size; ++c) {
+          const WallContact& r = candidate.contact[c];
+          if (!r.acts) continue;
+          f += r.force;
+          t += r.torque;
+          pressed += std::max(r.elastic + r.damping, 0.0);
+        }
+      }
+      force[i] = f;
+      torque[i] = t;
+      compressive[i] = pressed;
+      largest_compressive = std::max(largest_compressive, pressed);
+      watched += pressed > setup.watch_force ? 1 : 0;
+      if (move) travel2 = std::max(travel2, kick_and_drift(i, dt, keep));
+    }
+    window.largest_compressive_force = std::max(window.largest_compressive_force, largest_compressive);
+    window.most_watched = std::max(window.most_watched, watched);
+    return travel2;
+  }
+
+  double kick_and_drift(std::size_t i, double dt, double keep) {
+    p.velocity[i] = keep * p.velocity[i] + (dt / mass[i]) * force[i];
+    p.angular_velocity[i] = keep * p.angular_velocity[i] + (dt / inertia[i]) * torque[i];
+    p.position[i] += dt * p.velocity[i];
+    return (p.position[i] - listed_position[i]).squaredNorm();
+  }
+
+  double move_all() {
+    double travel2 = 0;
+#pragma omp parallel for schedule(static) reduction(max : travel2) if (p.size() > few_grains)
+    for (std::size_t i = 0; i < p.size(); ++i)
+      travel2 = std::max(travel2, kick_and_drift(i, setup.step, 1 - setup.drag * setup.step));
+    return travel2;
+  }
+
+  void begin_window() {
+    window = Window{};
+    window.first_step = window.last_step = step;
+    const double inf = std::numeric_limits<double>::infinity();
+    Window::Load empty;
+    empty.force_min = empty.torque_min = Vec3::Constant(inf);
+    empty.force_max = empty.torque_max = Vec3::Constant(-inf);
+    load_sum.assign(setup.walls.size(), empty);
+  }
+
+  void sum_wall_loads() {
+    loads.assign(setup.walls.size(), WallLoad{});
+    for (const WallContacts::Chunk& chunk : walls.chunk) {
+      loads[chunk.wall].force += chunk.load.force;
+      loads[chunk.wall].torque += chunk.load.torque;
+    }
+  }
+
+  void record_walls() {
+    sum_wall_loads();
+    for (std::size_t w = 0; w < setup.walls.size(); ++w) {
+      Window::Load& sum = load_sum[w];
+      sum.force += loads[w].force;
+      sum.torque += loads[w].torque;
+      sum.force_min = sum.force_min.cwiseMin(loads[w].force);
+      sum.force_max = sum.force_max.cwiseMax(loads[w].force);
+      sum.torque_min = sum.torque_min.cwiseMin(loads[w].torque);
+      sum.torque_max = sum.torque_max.cwiseMax(loads[w].torque);
+      sum.power -= loads[w].force.dot(poses[w].velocity) + loads[w].torque.dot(poses[w].angular_velocity);
+    }
+  }
+
+  void advance(std::uint64_t steps) {
+    if (steps == 0) return;
+    double travel2 = move_all();
+    for (std::uint64_t k = 1; k <= steps; ++k) {
+      ++step;
+      move_walls();
+      wall_travel += wall_speed * setup.step;
+      const double travel = std::sqrt(travel2);
+      // Two grains may have come 2 * travel closer, a grain and a wall travel + wall_travel.
+      if (!(2 * travel < skin && travel + wall_travel < skin)) {
+        guard();
+        build_lists();
+      }
+      evaluate(setup.step);
+      if (!(window.largest_overlap < runaway_overlap)) stop_for_overlap();
+      travel2 = sum_and_move(k < steps);
+      record_walls();
+    }
+    guard();
+  }
+
+  // Every grain is where a grain can be.
+  void guard() const {
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (!p.position[i].allFinite() || !p.velocity[i].allFinite() || !p.angular_velocity[i].allFinite())
+        throw PhysicsError("the motion of " + place(p, i, time()) +
+                           " is no longer a number; likely cause: a time step above the stable limit");
+      if ((p.position[i].array() < setup.low.array()).any() || (p.position[i].array() > setup.high.array()).any())
+        throw PhysicsError(place(p, i, time()) + " has left the vessel with speed " + number(p.velocity[i].norm()) +
+                           " m/s; likely cause: a time step above the stable limit or a gap that pinched it through a wall");
+    }
+  }
+
+  [[noreturn]] void stop_for_overlap() const {
+    for (std::size_t s = 0; s < pairs.list.size(); ++s) {
+      const std::uint32_t i = pairs.list.first[s], j = pairs.list.second[s];
+      const double overlap = p.radius[i] + p.radius[j] - (p.position[i] - p.position[j]).norm();
+      if (pairs.result[s].acts && !(overlap < runaway_overlap * std::min(p.radius[i], p.radius[j])))
+        throw PhysicsError("runaway overlap of " + number(overlap * 1e6) + " um between grain " + std::to_string(p.id[j]) +
+                           " and " + place(p, i, time()) + "; likely cause: a time step above the stable limit");
+    }
+    for (const WallCandidate& c : walls.candidate)
+      for (std::size_t k = 0; k < c.size; ++k) {
+        const double overlap = p.radius[c.particle] - c.contact[k].touch.distance;
+        if (c.contact[k].acts && !(overlap < runaway_overlap * p.radius[c.particle]))
+          throw PhysicsError("runaway overlap of " + number(overlap * 1e6) + " um between wall '" +
+                             setup.walls[c.wall].name + "' and " + place(p, c.particle, time()) +
+                             "; likely cause: a time step above the stable limit, or a gap too narrow for the grain");
+      }
+    throw PhysicsError("runaway overlap at t = " + number(time()) + " s");
+  }
+
+  double kinetic_energy() const {
+    double energy = 0;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      energy += 0.5 * mass[i] * p.velocity[i].squaredNorm() + 0.5 * inertia[i] * p.angular_velocity[i].squaredNorm();
+    return energy;
+  }
+};
+
+Simulation::Simulation(Setup setup, State state) : engine_(std::make_unique<Engine>(std::move(setup), std::move(state))) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+void Simulation::advance(std::uint64_t steps) { engine_->advance(steps); }
+std::uint64_t Simulation::step() const { return engine_->step; }
+double Simulation::time() const { return engine_->time(); }
+const Setup& Simulation::setup() const { return engine_->setup; }
+const Particles& Simulation::particles() const { return engine_->p; }
+double Simulation::kinetic_energy() const { return engine_->kinetic_energy(); }
+
+std::size_t Simulation::contacts() const {
+  std::size_t count = 0;
+  for (const PairForce& r : engine_->pairs.result) count += r.acts ? 1 : 0;
+  for (const WallCandidate& c : engine_->walls.candidate)
+    for (std::size_t k = 0; k < c.size; ++k) count += c.contact[k].acts ? 1 : 0;
+  return count;
+}
+
+State Simulation::state() const {
+  const Engine& e = *engine_;
+  State state;
+  state.step = e.step;
+  state.particles = e.p;
+  state.force = e.force;
+  state.torque = e.torque;
+  for (std::size_t s = 0; s < e.pairs.list.size(); ++s)
+    if (e.pairs.memory[s].touched)
+      state.pairs.push_back(
+          {e.pairs.list.first[s], e.pairs.list.second[s], e.pairs.memory[s].spring, e.pairs.memory[s].birth_step});
+  for (std::uint32_t i = 0; i < e.p.size(); ++i)
+    for (std::uint32_t k = e.walls.of_particle_begin[i]; k < e.walls.of_particle_begin[i + 1]; ++k) {
+      const WallCandidate& c = e.walls.candidate[e.walls.of_particle[k]];
+      for (std::size_t q = 0; q < c.size; ++q)
+        if (c.contact[q].memory.touched)
+          state.wall_pairs.push_back({i, c.wall, c.contact[q].touch.feature, c.contact[q].touch.normal,
+                                      c.contact[q].memory.spring, c.contact[q].memory.birth_step});
+    }
+  return state;
+}
+
+View Simulation::view() const {
+  const Engine& e = *engine_;
+  const std::size_t n = e.p.size();
+  const double half = 0.5 * e.setup.step;
+  View view;
+  view.step = e.step;
+  view.time = e.time();
+  view.id = e.p.id;
+  view.material = e.p.material;
+  view.radius = e.p.radius;
+  view.position = e.p.position;
+  view.compressive_force = e.compressive;
+  view.velocity.resize(n);
+  view.angular_velocity.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    view.velocity[i] = e.p.velocity[i] + half / e.mass[i] * e.force[i];
+    view.angular_velocity[i] = e.p.angular_velocity[i] + half / e.inertia[i] * e.torque[i];
+  }
+  for (std::size_t s = 0; s < e.pairs.list.size(); ++s) {
+    const PairForce& r = e.pairs.result[s];
+    if (!r.acts) continue;
+    const std::uint32_t i = e.pairs.list.first[s], j = e.pairs.list.second[s];
+    const Vec3 branch = e.p.position[j] - e.p.position[i];
+    const double distance = branch.norm();
+    view.pairs.push_back({i, j, e.p.radius[i] + e.p.radius[j] - distance, r.elastic, r.damping,
+                          r.force + branch * ((r.elastic + r.damping) / distance), e.pairs.memory[s].birth_step, r.sliding});
+  }
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t k = e.walls.of_particle_begin[i]; k < e.walls.of_particle_begin[i + 1]; ++k) {
+      const WallCandidate& c = e.walls.candidate[e.walls.of_particle[k]];
+      for (std::size_t q = 0; q < c.size; ++q) {
+        const WallContact& r = c.contact[q];
+        if (!r.acts) continue;
+        view.wall_pairs.push_back({i, c.wall, r.touch.facet, r.touch.kind, r.touch.point, r.touch.normal,
+                                   e.p.radius[i] - r.touch.distance, r.elastic, r.damping, r.tangential,
+                                   r.memory.birth_step, r.sliding});
+      }
+    }
+  for (std::size_t w = 0; w < e.poses.size(); ++w) view.walls.push_back({e.poses[w], e.loads[w].force, e.loads[w].torque});
+  return view;
+}
+
+Window Simulation::take_window() {
+  Engine& e = *engine_;
+  Window w = e.window;
+  w.last_step = e.step;
+  w.time = e.time();
+  w.kinetic_energy = e.kinetic_energy();
+  w.walls = e.load_sum;
+  const double steps = double(e.step - w.first_step);
+  for (Window::Load& load : w.walls) {
+    if (steps == 0) {
+      load = Window::Load{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0};
+      continue;
+    }
+    load.force /= steps;
+    load.torque /= steps;
+    load.power /= steps;
+  }
+  e.begin_window();
+  return w;
+}
+
+}  // namespace dem

@@ -1,0 +1,128 @@
+// A running simulation: grains, walls, contacts, stepped by leapfrog (velocity Verlet with half-step velocities, as in
+// Allen and Tildesley, "Computer Simulation of Liquids", section 3.2). Contacts are evaluated at the new positions with the
+// half-step velocities. The same setup and state give the same bytes for any number of threads, and a state taken at any
+// step continues exactly.
+#pragma once
+#include <array>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libdem/case/case.hpp"
+#include "libdem/geometry/walls.hpp"
+#include "libdem/particles/particles.hpp"
+
+namespace dem {
+
+// What does not change during a run.
+struct Setup {
+  std::vector<Material> materials;
+  std::vector<std::vector<Interaction>> interactions;  // [M][M], symmetric
+  std::vector<Wall> walls;
+  Vec3 gravity{0, 0, -9.81};  // m/s^2
+  double step = 0;            // s
+  double drag = 0;            // 1/s, viscous drag on velocity and spin per mass and inertia; settles beds
+  double watch_force = 20;    // N, grains under a larger compressive force are counted in the windows
+  std::size_t law = 0;        // row in ContactLaws (libdem/contact/laws.hpp)
+  // A grain whose centre leaves this box is lost and stops the run.
+  Vec3 low = Vec3::Constant(-std::numeric_limits<double>::infinity());  // m
+  Vec3 high = Vec3::Constant(std::numeric_limits<double>::infinity());  // m
+};
+
+// What must be remembered to continue exactly. Contacts in ascending order of rows (and wall, feature).
+struct State {
+  struct Pair {
+    std::uint32_t i, j;  // rows, i < j
+    Vec3 spring;         // m
+    std::uint64_t birth_step;
+  };
+  struct WallPair {
+    std::uint32_t i, wall;
+    std::uint64_t feature;
+    Vec3 normal, spring;
+    std::uint64_t birth_step;
+  };
+  std::uint64_t step = 0;
+  Particles particles;
+  std::vector<Vec3> force, torque;  // [N] of the last evaluation; empty for a fresh start
+  std::vector<Pair> pairs;
+  std::vector<WallPair> wall_pairs;
+};
+
+// One instant, for recording. Contacts in ascending order of rows (and wall, feature).
+struct PairRecord {
+  std::uint32_t i, j;               // rows
+  double overlap, elastic, damping;  // m, N, N
+  Vec3 tangential;                  // N on i
+  std::uint64_t birth_step;
+  bool sliding;
+};
+struct WallRecord {
+  std::uint32_t i, wall, facet;
+  MeshFeature feature;
+  Vec3 point, normal;  // m, unit from the grain to the wall
+  double overlap, elastic, damping;
+  Vec3 tangential;
+  std::uint64_t birth_step;
+  bool sliding;
+};
+struct WallInstant {
+  WallPose pose;
+  Vec3 force, torque;  // N, N m on the wall, torque about the pose position
+};
+struct View {
+  std::uint64_t step = 0;
+  double time = 0;  // s
+  std::vector<std::uint32_t> id;
+  std::vector<std::uint8_t> material;
+  std::vector<double> radius, compressive_force;         // m, N
+  std::vector<Vec3> position, velocity, angular_velocity;  // velocities at the same instant as the positions
+  std::vector<PairRecord> pairs;
+  std::vector<WallRecord> wall_pairs;
+  std::vector<WallInstant> walls;
+};
+
+// Means and extremes over the steps since the last window was taken.
+struct Window {
+  std::uint64_t first_step = 0, last_step = 0;  // steps (first, last]
+  double time = 0;                              // s, of last_step
+  double largest_compressive_force = 0;         // N, sum over a grain's contacts of the repulsive normal force
+  std::uint32_t most_watched = 0;               // largest number of grains above watch_force in one step
+  double largest_overlap = 0;                   // 1, overlap over radius
+  double kinetic_energy = 0;                    // J, of last_step
+  struct Load {
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // mean
+    Vec3 force_min, force_max, torque_min, torque_max;
+    double power = 0;  // W, mean of the power that the wall puts into the grains
+  };
+  std::vector<Load> walls;
+};
+
+class Simulation {
+ public:
+  // Throws CaseError where setup and state do not fit together.
+  Simulation(Setup setup, State state);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  // Throws PhysicsError: a number that is not finite, a runaway overlap, a lost grain.
+  void advance(std::uint64_t steps);
+
+  std::uint64_t step() const;
+  double time() const;  // s
+  const Setup& setup() const;
+  const Particles& particles() const;
+  std::size_t contacts() const;  // acting now, walls included
+  double kinetic_energy() const;  // J, translation and rotation
+  State state() const;
+  View view() const;
+  Window take_window();
+
+ private:
+  struct Engine;
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace dem

@@ -1,0 +1,90 @@
+#include "libdem/contact/normal/jkr.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "libdem/contact/pair_constants.hpp"
+#include "tests/support/csv.hpp"
+
+namespace dem {
+namespace {
+
+PairConstants<double> constants(double modulus, double gamma, double radius) {
+  PairConstants<double> c{};
+  c.effective_modulus = modulus;
+  c.work_of_adhesion = gamma;
+  c.effective_radius = radius;
+  c.adhesion_length = adhesion_length(gamma, radius, modulus);
+  return c;
+}
+
+// Reference: 60-digit evaluation of Johnson, Kendall and Roberts' equations, 191 points from the cut-off to kilonewtons.
+// Tolerance: the overlap is given as a double, so the force inherits its conditioning; a few roundings more are ours.
+TEST(Jkr, ForceAndContactRadiusAgreeWithTheSixtyDigitReference) {
+  const double eps = std::numeric_limits<double>::epsilon();
+  int points = 0;
+  for (const support::Row& row : support::read_csv(JAMSCOPE_DATA_DIR "/reference/jkr_reference.csv")) {
+    const auto value = [&](const char* key) { return std::stod(row.at(key)); };
+    const PairConstants<double> c = constants(value("E_star_Pa"), value("Gamma_J_m2"), value("R_star_m"));
+    const NormalForce<double> f = Jkr::evaluate(value("alpha_m"), c);
+    const double relative = 4 * eps * (1 + value("cond_F"));
+    EXPECT_NEAR(f.elastic, value("F_N"), std::max(relative * std::abs(value("F_N")), 1e-13 * value("Fc_N")))
+        << row.at("case") << " " << row.at("geometry") << " " << row.at("label");
+    EXPECT_NEAR(f.contact_radius, value("a_m"), relative * value("a_m"))
+        << row.at("case") << " " << row.at("geometry") << " " << row.at("label");
+    EXPECT_NEAR(jkr_stiffness(value("alpha_m"), c), value("dF_dalpha_N_m"),
+                // its conditioning is about the square of the force's; absolute at the force minimum, where it is zero
+                1e-14 * value("Fc_N") / c.adhesion_length +
+                    std::abs(value("dF_dalpha_N_m")) * 1e-13 * (1 + 50 * value("cond_F") * value("cond_F")))
+        << row.at("label");
+    ++points;
+  }
+  EXPECT_EQ(points, 191);
+}
+
+TEST(Jkr, BreaksAtFiveNinthsOfThePullOffForce) {
+  const PairConstants<double> c = constants(3.28125e10, 0.274, 2.3125e-4);
+  const double pull_off = pull_off_force(0.274, 2.3125e-4);
+  EXPECT_NEAR(Jkr::evaluate(Jkr::break_overlap(c), c).elastic, -5.0 / 9.0 * pull_off, 1e-7 * pull_off);  // vertical slope
+  EXPECT_NEAR(Jkr::evaluate(0.0, c).elastic, -8.0 / 9.0 * pull_off, 1e-14 * pull_off);
+  // Paper's case A, physics reference table 1.1.
+  EXPECT_NEAR(Jkr::break_overlap(c), -4.0643951118e-9, 1e-18);
+  EXPECT_NEAR(pull_off, 2.985887467696e-4, 1e-15);
+}
+
+TEST(Jkr, TheRootSolvesItsQuarticOverTwelveDecades) {
+  for (double exponent = -6; exponent <= 6; exponent += 0.01) {
+    const double delta = std::pow(10.0, exponent), y = jkr_root(delta);
+    EXPECT_NEAR(y * y * y * y - y, delta, 8e-16 * (y * y * y * y + y)) << delta;
+  }
+}
+
+TEST(Jkr, WithoutAdhesionItIsHertz) {
+  const PairConstants<double> c = constants(3.28125e10, 0, 2.3125e-4);
+  for (double overlap : {1e-9, 1e-6, 1e-4}) {
+    EXPECT_EQ(Jkr::evaluate(overlap, c).elastic, Hertz::evaluate(overlap, c).elastic);
+    EXPECT_EQ(Jkr::evaluate(overlap, c).contact_radius, Hertz::evaluate(overlap, c).contact_radius);
+  }
+}
+
+TEST(Jkr, APackGivesTheSameBitsAsSingleNumbers) {
+  const PairConstants<double> c = constants(3.28125e10, 0.274, 2.3125e-4);
+  PairConstants<Pack> packed{};
+  packed.effective_modulus = c.effective_modulus;
+  packed.work_of_adhesion = c.work_of_adhesion;
+  packed.effective_radius = c.effective_radius;
+  packed.adhesion_length = c.adhesion_length;
+  for (double start = -0.47; start < 1e5; start = start * (start > 0 ? 1.7 : 0.7) + (start < 0 ? 0.05 : 0)) {
+    const Pack overlap([&](auto lane) { return (start + 0.001 * double(lane)) * c.adhesion_length; });
+    const NormalForce<Pack> f = Jkr::evaluate(overlap, packed);
+    for (std::size_t lane = 0; lane < pack_width; ++lane) {
+      const NormalForce<double> g = Jkr::evaluate(double(overlap[lane]), c);
+      EXPECT_EQ(double(f.elastic[lane]), g.elastic);
+      EXPECT_EQ(double(f.contact_radius[lane]), g.contact_radius);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dem
