@@ -1,21 +1,18 @@
 #include "libdem/bed/bed.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <random>
 
+#include "libdem/case/derived.hpp"
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/errors.hpp"
 
 namespace dem {
 namespace {
-
-// Rayleigh wave time of the smallest grain, s: pi R sqrt(rho/G)/(0.1631 nu + 0.8766).
-double rayleigh_time(const Material& m, double radius) {
-  return std::numbers::pi * radius * std::sqrt(m.density / shear_modulus(m)) / (0.1631 * m.poisson + 0.8766);
-}
 
 // [0, 1) from a 64-bit generator, the same on every platform (the standard's distributions are not).
 double uniform(std::mt19937_64& random) { return double(random() >> 11) * 0x1.0p-53; }
@@ -48,7 +45,7 @@ Particles loose_column(const Setup& setup, const Bed& bed, std::uint8_t material
           triangles.clear();
           candidate_triangles(setup.walls[w], poses[w], x, radius, triangles);
           nearest(setup.walls[w], poses[w], x, radius, triangles, touches, scratch);
-          free = touches.empty();
+          free = touches.empty() && !inside_material(setup.walls[w], poses[w], x);
         }
         if (!free || grains.size() >= count) continue;
         grains.add(std::uint32_t(grains.size() + 1), material, radius, x);

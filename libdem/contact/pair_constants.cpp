@@ -10,7 +10,7 @@ MaterialTable make_material_table(const std::vector<Material>& materials,
       PairConstants<double> c{};
       const Interaction& law = interactions[a][b];
       c.effective_modulus = effective_modulus(materials[a], materials[b]);
-      c.effective_shear = effective_shear(materials[a], materials[b]);
+      c.effective_shear = effective_shear_modulus(materials[a], materials[b]);
       c.damping_ratio = damping_ratio(law.restitution);
       c.friction = law.friction;
       c.rolling_friction = law.rolling_friction;

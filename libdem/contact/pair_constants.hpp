@@ -4,23 +4,10 @@
 #include <numbers>
 #include <vector>
 
-#include "libdem/case/case.hpp"
+#include "libdem/case/derived.hpp"
 #include "libdem/contact/touch.hpp"
 
 namespace dem {
-
-// 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2, Pa. Johnson (1985) eq. 4.20.
-inline double effective_modulus(const Material& a, const Material& b) {
-  return 1 / ((1 - a.poisson * a.poisson) / a.young + (1 - b.poisson * b.poisson) / b.young);
-}
-
-// G = E / (2 (1 + nu)), Pa.
-inline double shear_modulus(const Material& m) { return m.young / (2 * (1 + m.poisson)); }
-
-// 1/G* = (2-nu1)/G1 + (2-nu2)/G2, Pa. Mindlin (1949).
-inline double effective_shear(const Material& a, const Material& b) {
-  return 1 / ((2 - a.poisson) / shear_modulus(a) + (2 - b.poisson) / shear_modulus(b));
-}
 
 // Damping ratio whose damped Hertz impact without adhesion returns with `restitution`, if the contact ends at zero
 // overlap: -ln e / sqrt(ln^2 e + pi^2). Tsuji (1992); exact by the substitution w = overlap^(5/4).

@@ -1,6 +1,7 @@
 #include "libdem/geometry/walls.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace dem {
 namespace {
@@ -29,6 +30,17 @@ void nearest_of(const CylinderInside& cylinder, const WallPose& pose, const Vec3
   const Vec3 normal = radial / r;
   const double distance = cylinder.radius - r;
   out.push_back({0, 0, MeshFeature::face, centre + distance * normal, normal, distance});
+}
+
+// Solid angle of the surface seen from x over 4 pi: 1 inside a closed outward surface, 0 outside.
+double winding_number(const TriangleMesh& mesh, const Vec3& x) {
+  double angle = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = mesh.vertices[t[0]] - x, b = mesh.vertices[t[1]] - x, c = mesh.vertices[t[2]] - x;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return angle / (4 * std::numbers::pi);
 }
 
 }  // namespace
@@ -72,6 +84,17 @@ bool near(const Wall& wall, const WallPose& pose, const Vec3& centre, double rea
   std::vector<MeshTouch> scratch;
   nearest(wall, pose, centre, reach, {}, touches, scratch);
   return !touches.empty();
+}
+
+bool inside_material(const Wall& wall, const WallPose& pose, const Vec3& x) {
+  const Vec3 body = Local{pose}.to_body(x);
+  if (const auto* plane = std::get_if<Plane>(&wall.shape)) return (body - plane->point).dot(plane->normal) < 0;
+  if (const auto* cylinder = std::get_if<CylinderInside>(&wall.shape)) {
+    const Vec3 from_axis = body - cylinder->point;
+    return (from_axis - from_axis.dot(cylinder->axis) * cylinder->axis).norm() > cylinder->radius;
+  }
+  const auto& mesh = std::get<MeshWall>(wall.shape);
+  return body.norm() <= mesh.reach && winding_number(mesh.finder->mesh(), body) > 0.5;
 }
 
 void nearest(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach,

@@ -74,6 +74,10 @@ void candidate_triangles(const Wall& wall, const WallPose& pose, const Vec3& cen
 // Is the wall within `reach` of the point? May say yes too often for meshes (their candidate triangles decide).
 bool near(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach);
 
+// Is the point inside the wall's material? For meshes by the winding number, the sum of solid angles of all triangles (van
+// Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125): exact for closed surfaces, costs a pass over the mesh.
+bool inside_material(const Wall& wall, const WallPose& pose, const Vec3& x);
+
 // Touches within `reach`, replacing `out`. `scratch` is working space of the caller.
 void nearest(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach,
              std::span<const std::uint32_t> triangles, std::vector<WallTouch>& out, std::vector<MeshTouch>& scratch);

@@ -44,7 +44,8 @@ struct Simulation::Engine {
   std::vector<double> compressive;
   std::vector<Vec3> listed_position;  // where the grains were when the lists were built
   std::vector<WallPose> poses;
-  double skin = 0;
+  double mean_radius = 1, skin = 0;  // m
+  std::uint64_t listed_step = 0;
   double wall_travel = 0;  // m, upper bound of the walls' movement since the lists were built
   double wall_speed = 0;   // m/s, upper bound
   PairContacts pairs;
@@ -65,9 +66,7 @@ struct Simulation::Engine {
       inertia[i] = sphere_inertia(mass[i], p.radius[i]);
     }
     compressive.assign(n, 0.0);
-    // Thin enough that the lists hold little more than the contacts, thick enough that building them costs a per cent or
-    // so: a twentieth of a grain is crossed in about a thousand steps.
-    const double mean_radius = n ? std::accumulate(p.radius.begin(), p.radius.end(), 0.0) / double(n) : 1.0;
+    mean_radius = n ? std::accumulate(p.radius.begin(), p.radius.end(), 0.0) / double(n) : 1.0;
     skin = 0.1 * mean_radius;
     for (const Wall& w : setup.walls) wall_speed = std::max(wall_speed, largest_speed(w));
     move_walls();
@@ -153,7 +152,16 @@ struct Simulation::Engine {
     pairs = std::move(fresh);
     build_wall_lists();
     listed_position = p.position;
+    listed_step = step;
     wall_travel = 0;
+  }
+
+  // Thin lists hold little more than the contacts, thick ones are built less often. The aim is a list that lasts a few hundred
+  // steps; forces do not depend on it.
+  void adapt_skin() {
+    const std::uint64_t lasted = step - listed_step;
+    if (lasted < 100) skin = std::min(1.5 * skin, mean_radius);
+    if (lasted > 1000) skin = std::max(0.8 * skin, 0.05 * mean_radius);
   }
 
   void build_wall_lists() {
@@ -333,6 +341,7 @@ struct Simulation::Engine {
       // Two grains may have come 2 * travel closer, a grain and a wall travel + wall_travel.
       if (!(2 * travel < skin && travel + wall_travel < skin)) {
         guard();
+        adapt_skin();
         build_lists();
       }
       evaluate(setup.step);
