@@ -22,13 +22,14 @@ struct PairForce {
   Vec3 force;               // N on i
   Vec3 torque_i, torque_j;  // N m
   double elastic, damping;  // N along the normal, > 0 pushes apart
-  bool acts, sliding;
+  bool sliding;
 };
 
 struct PairContacts {
   PairList list;
   std::vector<ContactMemory> memory;  // [P]
-  std::vector<PairForce> result;      // [P]
+  std::vector<PairForce> result;      // [P] of the pairs that act
+  std::vector<std::uint8_t> acts;     // [P] 1 for a formed contact
   struct Bodies {
     double effective_radius, effective_mass, effective_inertia, adhesion_length;
   };
@@ -62,6 +63,7 @@ struct WallLoad {
 
 struct WallContacts {
   std::vector<WallCandidate> candidate;  // sorted by wall, then particle
+  std::vector<std::uint8_t> acts;        // per candidate: number of formed contacts
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> of_particle_begin, of_particle;  // compressed rows: candidates of each particle, ascending
   // Candidates are handled in fixed chunks of one wall each, whose loads are added in order: the sum does not depend on the

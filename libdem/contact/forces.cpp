@@ -86,7 +86,7 @@ void evaluate_pair_block(const ForceInput& in, PairContacts& pairs, const std::a
   for (std::size_t k = 0; k < count; ++k) {
     ContactMemory& memory = pairs.memory[slot[k]];
     PairForce& result = pairs.result[slot[k]];
-    result.acts = holds[k];
+    pairs.acts[slot[k]] = holds[k];
     if (holds[k]) {
       if (!memory.touched) memory.birth_step = in.step;
       memory.touched = true;
@@ -116,7 +116,7 @@ double evaluate_pairs(const ForceInput& in, PairContacts& pairs, std::size_t beg
     const bool candidate =
         pairs.memory[s].touched || (p.position[i] - p.position[j]).squaredNorm() < reach * reach;
     if (!candidate) {
-      pairs.result[s].acts = false;
+      pairs.acts[s] = 0;
       continue;
     }
     slot[count++] = std::uint32_t(s);
@@ -135,8 +135,13 @@ double evaluate_pairs(const ForceInput& in, PairContacts& pairs, std::size_t beg
 // Carries memory from the places a grain touched in the last step to those it touches now: first the same feature, then,
 // where the grain rolled from one feature to its neighbour, the remaining place with the most similar normal.
 void inherit(WallCandidate& candidate, const std::vector<WallTouch>& touches) {
-  const auto old = candidate.contact;
   const std::size_t old_size = candidate.size;
+  if (old_size == 1 && touches.size() == 1 && candidate.contact[0].touch.feature == touches[0].feature) {
+    candidate.contact[0].touch = touches[0];
+    return;
+  }
+  std::array<WallContact, WallCandidate::capacity> old;
+  std::copy_n(candidate.contact.begin(), old_size, old.begin());
   std::array<bool, WallCandidate::capacity> taken{};
   candidate.size = std::uint32_t(touches.size());
   for (std::size_t k = 0; k < touches.size(); ++k) {
@@ -173,8 +178,8 @@ struct WallSlot {
 };
 
 template <class Law>
-void evaluate_wall_block(const ForceInput& in, const std::array<WallSlot, pack_width>& slot, std::size_t count,
-                         WallContacts::Chunk& chunk) {
+void evaluate_wall_block(const ForceInput& in, WallContacts& walls,
+                         const std::array<WallSlot, pack_width>& slot, std::size_t count, WallContacts::Chunk& chunk) {
   const Particles& p = in.particles;
   const WallPose& pose = in.poses[chunk.wall];
   const auto i = [&](std::size_t k) { return slot[k].candidate->particle; };
@@ -214,6 +219,7 @@ void evaluate_wall_block(const ForceInput& in, const std::array<WallSlot, pack_w
       contact.memory = ContactMemory{};
       continue;
     }
+    ++walls.acts[slot[k].candidate - walls.candidate.data()];
     if (!contact.memory.touched) contact.memory.birth_step = in.step;
     contact.memory.touched = true;
     contact.memory.spring = lane_of(spring, k);
@@ -248,25 +254,27 @@ void evaluate_wall_chunk(const ForceInput& in, WallContacts& walls, WallContacts
     nearest(wall, pose, p.position[candidate.particle], reach,
             std::span(walls.triangles).subspan(candidate.triangle_begin, candidate.triangle_end - candidate.triangle_begin),
             touches, chunk.scratch);
-    if (touches.empty() && candidate.size == 0) continue;
+    if (touches.empty() && candidate.size == 0) continue;  // acts is 0 already
     if (touches.size() > WallCandidate::capacity) {
       chunk.overflow = true;
       touches.resize(WallCandidate::capacity);
     }
     inherit(candidate, touches);
+    walls.acts[q] = 0;
     for (std::size_t t = 0; t < candidate.size; ++t) {
       WallContact& contact = candidate.contact[t];
+      contact.acts = false;
       if (!contact.memory.touched && contact.touch.distance >= radius) continue;
       slot[count++] = {&candidate, &contact};
       if (count == pack_width) {
-        evaluate_wall_block<Law>(in, slot, count, chunk);
+        evaluate_wall_block<Law>(in, walls, slot, count, chunk);
         count = 0;
       }
     }
   }
   if (count > 0) {
     for (std::size_t k = count; k < pack_width; ++k) slot[k] = slot[0];
-    evaluate_wall_block<Law>(in, slot, count, chunk);
+    evaluate_wall_block<Law>(in, walls, slot, count, chunk);
   }
 }
 

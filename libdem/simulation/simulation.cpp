@@ -127,6 +127,7 @@ struct Simulation::Engine {
     const std::size_t count = fresh.list.size();
     fresh.memory.resize(count);
     fresh.result.resize(count);
+    fresh.acts.assign(count, 0);
     fresh.bodies.resize(count);
     fresh.material_pair.resize(count);
 #pragma omp parallel for schedule(static)
@@ -143,9 +144,6 @@ struct Simulation::Engine {
         while (old < old_end && pairs.list.second[old] < j) ++old;
         if (old < old_end && pairs.list.second[old] == j) {
           fresh.memory[s] = pairs.memory[old];
-          fresh.result[s] = pairs.result[old];
-        } else {
-          fresh.result[s] = PairForce{};
         }
       }
     }
@@ -199,6 +197,7 @@ struct Simulation::Engine {
         fresh.chunk.push_back(std::move(chunk));
       }
     }
+    fresh.acts.assign(fresh.candidate.size(), 0);
     fresh.of_particle_begin.assign(n + 1, 0);
     for (const WallCandidate& c : fresh.candidate) ++fresh.of_particle_begin[c.particle + 1];
     for (std::size_t i = 0; i < n; ++i) fresh.of_particle_begin[i + 1] += fresh.of_particle_begin[i];
@@ -248,20 +247,21 @@ struct Simulation::Engine {
       Vec3 f = mass[i] * setup.gravity, t = Vec3::Zero();
       double pressed = 0;
       for (std::uint32_t s = pairs.list.begin[i]; s < pairs.list.begin[i + 1]; ++s) {
+        if (!pairs.acts[s]) continue;
         const PairForce& r = pairs.result[s];
-        if (!r.acts) continue;
         f += r.force;
         t += r.torque_i;
         pressed += std::max(r.elastic + r.damping, 0.0);
       }
       for (std::uint32_t k = pairs.list.incoming_begin[i]; k < pairs.list.incoming_begin[i + 1]; ++k) {
+        if (!pairs.acts[pairs.list.incoming[k]]) continue;
         const PairForce& r = pairs.result[pairs.list.incoming[k]];
-        if (!r.acts) continue;
         f -= r.force;
         t += r.torque_j;
         pressed += std::max(r.elastic + r.damping, 0.0);
       }
       for (std::uint32_t k = walls.of_particle_begin[i]; k < walls.of_particle_begin[i + 1]; ++k) {
+        if (!walls.acts[walls.of_particle[k]]) continue;
         const WallCandidate& candidate = walls.candidate[walls.of_particle[k]];
         for (std::size_t c = 0; c < candidate.size; ++c) {
           const WallContact& r = candidate.contact[c];
@@ -368,7 +368,7 @@ struct Simulation::Engine {
     for (std::size_t s = 0; s < pairs.list.size(); ++s) {
       const std::uint32_t i = pairs.list.first[s], j = pairs.list.second[s];
       const double overlap = p.radius[i] + p.radius[j] - (p.position[i] - p.position[j]).norm();
-      if (pairs.result[s].acts && !(overlap < runaway_overlap * std::min(p.radius[i], p.radius[j])))
+      if (pairs.acts[s] && !(overlap < runaway_overlap * std::min(p.radius[i], p.radius[j])))
         throw PhysicsError("runaway overlap of " + number(overlap * 1e6) + " um between grain " + std::to_string(p.id[j]) +
                            " and " + place(p, i, time()) + "; likely cause: a time step above the stable limit");
     }
@@ -405,9 +405,8 @@ double Simulation::kinetic_energy() const { return engine_->kinetic_energy(); }
 
 std::size_t Simulation::contacts() const {
   std::size_t count = 0;
-  for (const PairForce& r : engine_->pairs.result) count += r.acts ? 1 : 0;
-  for (const WallCandidate& c : engine_->walls.candidate)
-    for (std::size_t k = 0; k < c.size; ++k) count += c.contact[k].acts ? 1 : 0;
+  for (std::uint8_t a : engine_->pairs.acts) count += a;
+  for (std::uint8_t a : engine_->walls.acts) count += a;
   return count;
 }
 
@@ -452,8 +451,8 @@ View Simulation::view() const {
     view.angular_velocity[i] = e.p.angular_velocity[i] + half / e.inertia[i] * e.torque[i];
   }
   for (std::size_t s = 0; s < e.pairs.list.size(); ++s) {
+    if (!e.pairs.acts[s]) continue;
     const PairForce& r = e.pairs.result[s];
-    if (!r.acts) continue;
     const std::uint32_t i = e.pairs.list.first[s], j = e.pairs.list.second[s];
     const Vec3 branch = e.p.position[j] - e.p.position[i];
     const double distance = branch.norm();
