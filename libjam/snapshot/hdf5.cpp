@@ -284,6 +284,9 @@ void File::fail(const std::string& place, const std::string& problem) const {
 }
 
 File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) {
+  // A badly damaged file can leave something open inside HDF5, whose clean-up at exit then complains on stderr. Our
+  // files are closed by their destructors, so that clean-up has nothing to do for us.
+  [[maybe_unused]] static const herr_t no_cleanup_at_exit = H5dont_atexit();
   const Quiet quiet;
   const Handle access = file_access();
   std::string verb = "open for reading";
@@ -298,7 +301,14 @@ File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) 
       verb = "create";
       id_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get());
       break;
-    case Mode::read:
+    case Mode::read: {
+      // Metadata that a writer is just changing is read again, after 1, 2, 4, ... ns plus the system's latency; HDF5's
+      // own limit of 100 attempts would wait for minutes where the file is damaged.
+      H5Pset_metadata_read_attempts(access.get(), 16);
+      // Let a file that was cut short be opened for what is left of it; reading past its end still fails. HDF5's own
+      // tools use this property; a version without it refuses such a file.
+      const hbool_t skip = true;
+      H5Pset(access.get(), "skip_eof_check", &skip);
       // Without a writer, SWMR reading is plain reading; with one, or after one was killed, nothing else opens the
       // file.
       id_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.get());
@@ -309,6 +319,7 @@ File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) 
         if (id_ < 0) throw DataError(path_ + ": cannot open for reading (" + why + ")");
       }
       break;
+    }
     case Mode::append:
       verb = "open for appending";
       id_ = H5Fopen(path_.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access.get());
@@ -732,6 +743,15 @@ std::string File::get_text_attribute(const std::string& object, const std::strin
   const Handle memory = text_type(length);
   if (H5Aread(attribute.get(), memory.get(), text.data()) < 0) fail(place, with_reason("cannot read the attribute"));
   return trimmed(text.data(), length);
+}
+
+void File::remove(const std::string& name) {
+  const Quiet quiet;
+  const auto at = name.find('@');
+  const herr_t status = at == std::string::npos ? H5Ldelete(id_, name.c_str(), H5P_DEFAULT)
+                                                : H5Adelete_by_name(id_, name.substr(0, at).c_str(),
+                                                                    name.substr(at + 1).c_str(), H5P_DEFAULT);
+  if (status < 0) fail(name, with_reason("cannot remove"));
 }
 
 std::filesystem::path aside_of(const std::filesystem::path& path) {

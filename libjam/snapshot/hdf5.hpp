@@ -174,6 +174,9 @@ class File {
   }
   std::vector<std::string> attributes(const std::string& object) const;  // sorted by name
 
+  // Removes an array, a group with all that is in it, or an attribute, "/object@name".
+  void remove(const std::string& name);
+
   // Throws DataError("FILE:place: problem").
   [[noreturn]] void fail(const std::string& place, const std::string& problem) const;
 
