@@ -269,6 +269,21 @@ bool Section::number(std::string_view key, double& out, Need need) {
   return true;
 }
 
+bool Section::numbers(std::string_view key, std::vector<double>& out, Need need) {
+  const toml::node* node = find(key, need);
+  if (!node) return false;
+  const toml::array* list = node->as_array();
+  if (!list) return wrong_type(key, "a list of plain numbers", *node);
+  std::vector<double> values;
+  for (const toml::node& entry : *list) {
+    const auto value = entry.is_number() ? entry.value<double>() : std::nullopt;
+    if (!value || !std::isfinite(*value)) return wrong_type(key, "a list of plain numbers", entry);
+    values.push_back(*value);
+  }
+  out = std::move(values);
+  return true;
+}
+
 bool Section::whole_number(std::string_view key, std::uint64_t& out, Need need) {
   const toml::node* node = find(key, need);
   if (!node) return false;

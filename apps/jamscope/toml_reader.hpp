@@ -89,6 +89,7 @@ class Section {
   bool quantities(std::string_view key, const Dimension& dimension, std::vector<double>& out,
                   Need need = Need::required);
   bool number(std::string_view key, double& out, Need need = Need::required);
+  bool numbers(std::string_view key, std::vector<double>& out, Need need = Need::required);
   bool whole_number(std::string_view key, std::uint64_t& out, Need need = Need::required);
   bool text(std::string_view key, std::string& out, Need need = Need::required);
   // One of a few words.
