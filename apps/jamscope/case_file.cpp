@@ -301,4 +301,12 @@ jam::Criteria read_criteria_file(const std::string& path, const jam::Criteria& b
   return read_criteria_text(read_text_file(path), path, base, overrides);
 }
 
+jam::Criteria read_case_criteria(std::string_view text, const std::string& path) {
+  Document document(text, path, {});
+  jam::Criteria criteria;
+  read_analysis(document.root().section("analysis", optional), document, criteria);
+  document.throw_problems();
+  return criteria;
+}
+
 }  // namespace jamscope

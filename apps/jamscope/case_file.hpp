@@ -41,4 +41,7 @@ jam::Criteria read_criteria_text(std::string_view text, const std::string& path,
 jam::Criteria read_criteria_file(const std::string& path, const jam::Criteria& base,
                                  const std::vector<std::string>& overrides = {});
 
+// The criteria of a case whose other tables do not matter, as stored with its snapshots. Throws dem::CaseError.
+jam::Criteria read_case_criteria(std::string_view text, const std::string& path);
+
 }  // namespace jamscope

@@ -1,0 +1,30 @@
+// jamscope analyze: the analysis of stored snapshots, the same as that of a running simulation.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "apps/jamscope/console.hpp"
+#include "apps/jamscope/stored_run.hpp"
+#include "libjam/analysis.hpp"
+
+namespace jamscope {
+
+struct AnalyzeOptions {
+  InputOptions input;
+  std::string output;                  // folder
+  std::string criteria;                // criteria file, or empty
+  std::vector<std::string> overrides;  // of criteria, "key=value"
+  bool overwrite = false;
+  bool quiet = false;
+  LogFormat log_format = LogFormat::text;
+  std::vector<std::string> command_line;
+};
+
+// Writes the result files into options.output and prints what was found. Returns the exit code; throws like the
+// libraries, and UsageError.
+int analyze(const AnalyzeOptions& options);
+
+// The few lines with which analyze and simulate end.
+std::string result_text(const jam::Analysis& analysis);
+
+}  // namespace jamscope

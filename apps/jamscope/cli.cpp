@@ -1,0 +1,240 @@
+#include "apps/jamscope/cli.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <new>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/jamscope/analyze.hpp"
+#include "apps/jamscope/case_file.hpp"
+#include "apps/jamscope/check.hpp"
+#include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/inspect.hpp"
+#include "apps/jamscope/network_metrics.hpp"
+#include "apps/jamscope/simulate.hpp"
+#include "apps/jamscope/toml_reader.hpp"
+#include "jamscope/version.hpp"
+#include "libdem/errors.hpp"
+#include "libjam/errors.hpp"
+
+namespace jamscope {
+namespace {
+
+using Command = std::function<int()>;
+
+// Whatever the subcommands parse into; lives as long as the parser.
+struct Options {
+  std::vector<std::string> command_line;
+  std::string case_path;
+  std::vector<std::string> overrides;
+  bool json = false;
+  SimulateOptions simulate;
+  std::string until;
+  AnalyzeOptions analyze;
+  InspectOptions inspect;
+  MetricsOptions metrics;
+  bool all_frames = false;
+};
+
+const std::map<std::string, LogFormat> log_formats{{"text", LogFormat::text}, {"jsonl", LogFormat::jsonl}};
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const char* example) {
+  // Without allow_extra_args(false) the option would swallow every argument up to the next option.
+  command.add_option("--set", overrides, fmt::format("replace one key, may be repeated: {}", example))
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_log_options(CLI::App& command, bool& quiet, LogFormat& format) {
+  command.add_flag("-q,--quiet", quiet, "no progress, only warnings and errors");
+  command.add_option("--log-format", format, "progress for people (text) or for machines (jsonl)")
+      ->transform(CLI::CheckedTransformer(log_formats).description(""))
+      ->type_name("text|jsonl");
+}
+
+void add_input(CLI::App& command, InputOptions& input) {
+  command.add_option("INPUT", input.paths, "file of snapshots (run.h5), or another code's dumps with --map")
+      ->required()
+      ->type_name("");
+  command.add_option("--map", input.map, "TOML file that names the dumps' columns, units and walls")->type_name("FILE");
+  command.add_option("--blade", input.blade, "the wall that is the blade, whatever the data say")->type_name("NAME");
+  command.add_option("--vessel", input.vessel, "the wall that is the vessel")->type_name("NAME");
+}
+
+Command add_check(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("check", "read a case and print what follows from it; simulates nothing");
+  c.add_option("CASE", o.case_path, "case file (TOML)")->required()->type_name("");
+  add_overrides(c, o.overrides, "--set bed.depth=\"4 mm\"");
+  c.add_flag("--json", o.json, "for machines, in SI units");
+  c.footer("Example:\n  jamscope check data/cases/ft4_a_down.toml --set run.step=\"2.5e-8 s\"");
+  return [&o] {
+    const CaseFile file = read_case_file(o.case_path, o.overrides);
+    fmt::print("{}", o.json ? check_json(file) : check_text(file));
+    return 0;
+  };
+}
+
+#if __has_include("apps/jamscope/simulate.cpp")
+Command add_simulate(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("simulate", "simulate a case, analyse it in place and write the report");
+  SimulateOptions& s = o.simulate;
+  c.add_option("CASE", s.case_path, "case file (TOML)")->required()->type_name("");
+  c.add_option("-o,--output", s.output, "folder for all results")->required()->type_name("DIR");
+  s.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  c.add_option("-t,--threads", s.threads, "number of threads; the results do not depend on it")
+      ->check(CLI::Range(1, 4096).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  c.add_flag("--resume", s.resume, "continue from the last checkpoint in DIR");
+  c.add_option("--until", o.until, "stop at this simulated time, for example \"0.5 s\"")->type_name("TIME");
+  add_overrides(c, s.overrides, "--set bed.depth=\"4 mm\"");
+  c.add_option("--bed-cache", s.bed_cache, "folder in which settled beds are kept for later runs")->type_name("DIR");
+  c.add_flag("--overwrite", s.overwrite, "replace the results of an earlier run in DIR");
+  add_log_options(c, s.quiet, s.log_format);
+  c.footer("Example:\n  jamscope simulate data/cases/ft4_quick.toml -o quick --threads 2");
+  return [&o] {
+    if (!o.until.empty()) {
+      try {
+        o.simulate.until = to_si(o.until, dimension::time);
+      } catch (const UnitError& error) {
+        throw UsageError(fmt::format("--until {}", error.what()));
+      }
+    }
+    o.simulate.command_line = o.command_line;
+    return simulate(o.simulate);
+  };
+}
+#endif
+
+Command add_analyze(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("analyze", "find the jams in stored snapshots");
+  AnalyzeOptions& a = o.analyze;
+  add_input(c, a.input);
+  c.add_option("-o,--output", a.output, "folder for jam.h5, events.csv, summary.json and report.html")
+      ->required()
+      ->type_name("DIR");
+  c.add_option("--criteria", a.criteria, "TOML file with an [analysis] table; default: that of the run's own case")
+      ->type_name("FILE");
+  add_overrides(c, a.overrides, "--set analysis.jam_force=\"5 N\"");
+  c.add_flag("--overwrite", a.overwrite, "replace the results of an earlier analysis in DIR");
+  add_log_options(c, a.quiet, a.log_format);
+  c.footer(
+      "Examples:\n  jamscope analyze run/run.h5 -o jams --set jam_force=\"5 N\"\n"
+      "  jamscope analyze atoms.dump pairs.dump --map map.toml -o jams");
+  return [&o] {
+    o.analyze.command_line = o.command_line;
+    return analyze(o.analyze);
+  };
+}
+
+Command add_inspect(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("inspect", "say what a file holds, whether it is valid, what it lacks");
+  add_input(c, o.inspect.input);
+  c.add_flag("--json", o.inspect.json, "for machines");
+  c.add_flag("--quick", o.inspect.quick, "read only the first and the last frame");
+  c.add_flag("-q,--quiet", o.inspect.quiet, "no progress");
+  c.footer("Example:\n  jamscope inspect run/run.h5");
+  return [&o] { return inspect(o.inspect); };
+}
+
+Command add_metrics(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("metrics", "network metrics of every frame, as a table on standard output");
+  MetricsOptions& m = o.metrics;
+  add_input(c, m.input);
+  auto* const frame = c.add_option("--frame", m.frame, "this frame only, counted from 0")->type_name("K");
+  c.add_flag("--all", o.all_frames, "every frame (the default)")->excludes(frame);
+  c.add_option("--metric", m.names, "names from the list below, separated by commas; default: all")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...");
+  const std::map<std::string, TableFormat> formats{{"csv", TableFormat::csv}, {"json", TableFormat::json}};
+  c.add_option("--format", m.format, "csv or json")
+      ->transform(CLI::CheckedTransformer(formats).description(""))
+      ->type_name("csv|json");
+  c.footer("Metrics:\n" + metric_list() + "\nExample:\n  jamscope metrics run/run.h5 --metric coordination > z.csv");
+  return [&o] { return network_metrics(o.metrics); };
+}
+
+// The table of subcommands, in the order of the help text. To add one: a function like those above and a row here; it
+// adds its options to the parser and returns what is to be done.
+using AddCommand = Command (*)(CLI::App&, Options&);
+constexpr AddCommand commands[] = {
+    add_check,
+#if __has_include("apps/jamscope/simulate.cpp")
+    add_simulate,
+#endif
+    add_analyze,  add_inspect, add_metrics,
+};
+
+int fail(int code, const std::string& message) {
+  fmt::print(stderr, "error: {}\n", message);
+  return code;
+}
+
+// Exceptions of the three gates to exit codes.
+int run_guarded(const Command& command) {
+  try {
+    return command();
+  } catch (const dem::PhysicsError& error) {
+    return fail(1, error.what());
+  } catch (const dem::CaseError& error) {
+    return fail(2, error.what());
+  } catch (const jam::CriteriaError& error) {
+    return fail(2, error.what());
+  } catch (const UsageError& error) {
+    return fail(2, error.what());
+  } catch (const UnitError& error) {
+    return fail(2, error.what());
+  } catch (const jam::DataError& error) {
+    return fail(3, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(3, "not enough memory");
+  } catch (const std::exception& error) {
+    return fail(3, fmt::format("unexpected, please report it: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app("Simulates a granular bed that a blade drives past a wall, and finds, follows and measures the jams.",
+               "jamscope");
+  Options options;
+  options.command_line.assign(argv, argv + argc);
+  app.set_version_flag("--version", fmt::format("jamscope {} ({})", version, commit));
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  app.footer(
+      "Exit codes: 0 done; 1 the physics stopped the run; 2 usage or case error; 3 unreadable or invalid data.\n"
+      "Example:\n  jamscope check data/cases/ft4_a_down.toml");
+  std::vector<Command> actions;
+  for (const AddCommand add : commands) actions.push_back(add(app, options));
+
+  if (argc > 1 && argv[1][0] != '-') {
+    std::vector<std::string> names;
+    for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+    if (std::find(names.begin(), names.end(), argv[1]) == names.end())
+      return fail(2, fmt::format("unknown command '{}'{}", argv[1], suggestion(argv[1], names)));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);  // --help, --version
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    return fail(2, fmt::format("{}\nsee: jamscope{}{} --help", error.what(), chosen.empty() ? "" : " ",
+                               chosen.empty() ? "" : chosen.front()->get_name()));
+  }
+  const auto all = app.get_subcommands({});
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (all[k]->parsed()) return run_guarded(actions[k]);
+  return fail(2, "no command given\nsee: jamscope --help");
+}
+
+}  // namespace jamscope

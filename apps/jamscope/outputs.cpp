@@ -1,0 +1,243 @@
+#include "apps/jamscope/outputs.hpp"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "apps/jamscope/case_file.hpp"
+#include "apps/jamscope/derived_table.hpp"
+#include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/report.hpp"
+#include "jamscope/version.hpp"
+#include "libdem/errors.hpp"
+#include "libjam/errors.hpp"
+#include "libjam/results_file.hpp"
+
+namespace jamscope {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+// summary.json is for reading; all events are in events.csv.
+constexpr std::size_t events_in_summary = 20;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+template <class T>
+void set_if(Json& json, const char* key, const T& value, bool known) {
+  if (known) json[key] = value;
+}
+
+Json run_json(const jam::RunInfo& info, const RunFacts& facts) {
+  Json run;
+  set_if(run, "name", facts.name, !facts.name.empty());
+  set_if(run, "description", facts.description, !facts.description.empty());
+  set_if(run, "creator", info.creator, !info.creator.empty());
+  set_if(run, "creator_version", info.creator_version, !info.creator_version.empty());
+  set_if(run, "commit", info.commit, !info.commit.empty());
+  set_if(run, "created_utc", info.created_utc, !info.created_utc.empty());
+  set_if(run, "case_sha256", info.case_sha256, !info.case_sha256.empty());
+  set_if(run, "seed", info.seed, !info.case_toml.empty());
+  set_if(run, "step_s", info.dt, info.dt > 0);
+  set_if(run, "command_line", info.argv, !info.argv.empty());
+  Json analysed{{"version", version}, {"commit", commit}};
+  set_if(analysed, "created_utc", facts.created_utc, !facts.created_utc.empty());
+  set_if(analysed, "command_line", facts.command_line, !facts.command_line.empty());
+  set_if(analysed, "inputs", facts.inputs, !facts.inputs.empty());
+  set_if(analysed, "machine", facts.machine, !facts.machine.empty());
+  set_if(analysed, "threads", facts.threads, facts.threads > 0);
+  set_if(analysed, "wall_seconds", facts.wall_seconds, std::isfinite(facts.wall_seconds));
+  set_if(analysed, "particle_steps_per_second", facts.particle_steps_per_second,
+         std::isfinite(facts.particle_steps_per_second));
+  set_if(analysed, "warnings", facts.warnings, !facts.warnings.empty());
+  run["results_by"] = analysed;
+  return run;
+}
+
+const char* word(jam::CompressiveMeasure measure) {
+  switch (measure) {
+    case jam::CompressiveMeasure::sum:
+      return "sum";
+    case jam::CompressiveMeasure::max:
+      return "max";
+    case jam::CompressiveMeasure::signed_:
+      return "signed";
+  }
+  return "";
+}
+
+Json event_json(const jam::JamEvent& e) {
+  return {{"start_s", e.start},
+          {"end_s", e.end},
+          {"survival_time_s", e.survival_time},
+          {"shortest_s", e.shortest},
+          {"longest_s", number(e.longest)},
+          {"samples", e.samples},
+          {"open_at_start", e.open_at_start},
+          {"open_at_end", e.open_at_end},
+          {"peak_force_N", e.peak_force},
+          {"peak_time_s", e.peak_time},
+          {"peak_particle", e.peak_particle},
+          {"peak_in_gap", e.peak_in_gap},
+          {"bridged", e.bridged},
+          {"members", e.members}};
+}
+
+Json analysis_json(const jam::Analysis& a) {
+  Json json;
+  Json bounds = Json::array();
+  for (const double bound : a.criteria.survival_classes) bounds.push_back(bound);
+  json["criteria"] = {{"measure", word(a.criteria.measure)},
+                      {"jam_force_N", a.criteria.jam_force},
+                      {"bridge_contact_share", a.criteria.bridge_contact_share},
+                      {"gap_margin", a.criteria.gap_margin},
+                      {"survival_classes_s", bounds}};
+  json["frames"] = a.frames.size();
+  json["observed_time_s"] = number(a.observed_time);
+  json["sampling_interval_s"] = number(a.sampling_interval);
+  if (!a.frames.empty()) {
+    json["first_time_s"] = a.frames.front().time;
+    json["last_time_s"] = a.frames.back().time;
+    json["particles"] = a.frames.back().particles;
+    // Ties: the earliest frame.
+    const auto peak = std::max_element(a.frames.begin(), a.frames.end(), [](const auto& x, const auto& y) {
+      return x.largest_compressive_force < y.largest_compressive_force;
+    });
+    json["largest_compressive_force"] = {{"force_N", number(peak->largest_compressive_force)},
+                                         {"time_s", peak->time},
+                                         {"particle", peak->largest_particle}};
+  }
+  const auto bridged = std::count_if(a.events.begin(), a.events.end(), [](const auto& e) { return e.bridged; });
+  const auto censored =
+      std::count_if(a.events.begin(), a.events.end(), [](const auto& e) { return e.open_at_start || e.open_at_end; });
+  json["jams"] = {{"events", a.events.size()},
+                  {"bridged", bridged},
+                  {"cut_off_by_the_record", censored},
+                  {"frequency_per_s", number(a.jam_frequency)},
+                  {"jammed_time_s", number(a.jammed_time)},
+                  {"jammed_time_share", number(a.jammed_time / a.observed_time)},
+                  {"mean_survival_time_s", number(a.jammed_time / static_cast<double>(a.events.size()))},
+                  {"jammed_in_gap_share", number(a.jammed_in_gap_share)},
+                  {"particle_tracks", a.tracks.size()},
+                  {"clusters", a.clusters.size()}};
+  json["survival_classes"] = Json::array();
+  for (const jam::SurvivalClass& c : a.survival_classes)
+    json["survival_classes"].push_back({{"low_s", c.low},
+                                        {"high_s", number(c.high)},
+                                        {"events", c.events},
+                                        {"frequency_per_s", number(c.frequency)},
+                                        {"share_of_jam_time", number(c.share_of_jam_time)}});
+  json["frames_by_jammed_particles"] = a.jammed_histogram;
+  json["flow_energy"] = {{"source", a.flow_energy.source}, {"total_J", number(a.flow_energy.total)}};
+  json["first_events"] = Json::array();
+  for (std::size_t e = 0; e < std::min(events_in_summary, a.events.size()); ++e)
+    json["first_events"].push_back(event_json(a.events[e]));
+  json["notes"] = a.notes;
+  return json;
+}
+
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) {
+      const std::size_t colon = line.find(": ");
+      if (colon != std::string::npos) return line.substr(colon + 2);
+    }
+  utsname name{};
+  return uname(&name) == 0 ? name.machine : "unknown processor";
+}
+
+ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts) {
+  ReportContext context;
+  context.name = facts.name;
+  context.description = facts.description;
+  context.command_line = facts.command_line;
+  context.machine = facts.machine;
+  context.created_utc = facts.created_utc;
+  context.wall_seconds = facts.wall_seconds;
+  context.particle_steps_per_second = facts.particle_steps_per_second;
+  context.warnings = facts.warnings;
+  if (!info.case_toml.empty()) {
+    try {
+      const CaseFile file = read_case_text(info.case_toml, "stored case");
+      for (const DerivedRow& row : derived_table(file.physics, dem::derive(file.physics)))
+        context.derived.push_back({row.name, row.value, row.unit});
+    } catch (const dem::CaseError&) {
+      // A case of another version: the page does without its derived numbers.
+    }
+  }
+  return context;
+}
+
+}  // namespace
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+RunFacts facts_of_this_process(std::vector<std::string> command_line) {
+  RunFacts facts;
+  facts.command_line = std::move(command_line);
+  facts.machine = fmt::format("{}, {} processors", processor(), std::max(1u, std::thread::hardware_concurrency()));
+  facts.created_utc = utc_now();
+  return facts;
+}
+
+std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const RunFacts& facts) {
+  const Json json{{"run", run_json(info, facts)}, {"analysis", analysis_json(analysis)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void prepare_folder(const std::string& folder, bool overwrite) {
+  std::error_code error;
+  const auto status = fs::status(folder, error);
+  if (fs::exists(status) && !fs::is_directory(status)) throw UsageError(folder + " is a file, expected a folder");
+  if (fs::is_directory(status) && !overwrite && !fs::is_empty(folder, error))
+    throw UsageError(folder + " is not empty: choose another folder, or --overwrite to replace the results in it");
+  fs::create_directories(folder, error);
+  if (error) throw UsageError(fmt::format("{} cannot be made: {}", folder, error.message()));
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  const std::string aside = path + ".part";
+  std::ofstream out(aside, std::ios::binary | std::ios::trunc);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  std::error_code error;
+  if (!out) {
+    const std::string reason = std::strerror(errno);
+    fs::remove(aside, error);
+    throw jam::DataError(fmt::format("{}: cannot be written: {}", path, reason));
+  }
+  fs::rename(aside, path, error);
+  if (error) throw jam::DataError(fmt::format("{}: cannot be written: {}", path, error.message()));
+}
+
+void write_outputs(const std::string& folder, const jam::RunInfo& info, const jam::Analysis& analysis,
+                   const jam::Series& series, const RunFacts& facts) {
+  const auto in_folder = [&](const char* name) { return (fs::path(folder) / name).string(); };
+  write_text_file(in_folder("events.csv"), jam::events_csv(analysis));
+  write_text_file(in_folder("summary.json"), summary_json(info, analysis, facts));
+  jam::write_results(in_folder("jam.h5"), analysis, info);
+  write_text_file(in_folder("report.html"), report_html(info, analysis, series, report_context(info, facts)));
+}
+
+}  // namespace jamscope

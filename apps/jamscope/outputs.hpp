@@ -1,0 +1,45 @@
+// The results of an analysis as files of one folder: events.csv summary.json jam.h5 report.html.
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "libjam/analysis.hpp"
+#include "libjam/snapshot/snapshot.hpp"
+
+namespace jamscope {
+
+// What this process knows and neither RunInfo nor Analysis does. Empty, 0 or NaN: not known, not written.
+struct RunFacts {
+  std::string name, description;          // of the case
+  std::vector<std::string> inputs;        // files that were analysed
+  std::vector<std::string> command_line;  // of this process
+  std::string machine;                    // "AMD EPYC 7763, 2 processors"
+  std::string created_utc;                // of the results
+  int threads = 0;
+  double wall_seconds = std::numeric_limits<double>::quiet_NaN();
+  double particle_steps_per_second = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> warnings;
+};
+
+// Fills machine and created_utc.
+RunFacts facts_of_this_process(std::vector<std::string> command_line);
+std::string utc_now();  // "2026-11-22T03:08:39Z"
+
+// summary.json. `run` says where the numbers come from; `analysis` depends on the analysis alone, so that equal
+// analyses have equal bytes. Numbers that do not exist (NaN, infinity) are null.
+std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const RunFacts& facts);
+
+// Makes the folder, with its parents. Throws UsageError where it holds something already and `overwrite` is false, or
+// where the path is a file.
+void prepare_folder(const std::string& folder, bool overwrite);
+
+// Written under another name, then renamed, so that the file is either the old or the whole new one. Throws
+// jam::DataError where the disk refuses.
+void write_text_file(const std::string& path, const std::string& text);
+
+// All result files. The folder must exist; other files in it are left alone.
+void write_outputs(const std::string& folder, const jam::RunInfo& info, const jam::Analysis& analysis,
+                   const jam::Series& series, const RunFacts& facts);
+
+}  // namespace jamscope

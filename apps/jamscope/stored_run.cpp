@@ -1,0 +1,66 @@
+#include "apps/jamscope/stored_run.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "apps/jamscope/case_file.hpp"
+#include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/map_file.hpp"
+#include "apps/jamscope/toml_reader.hpp"
+#include "libjam/errors.hpp"
+#include "libjam/snapshot/open_source.hpp"
+
+namespace jamscope {
+
+void assign_role(std::vector<jam::Wall>& walls, const std::string& name, jam::WallRole role) {
+  std::vector<std::string> names;
+  bool found = false;
+  for (const jam::Wall& wall : walls) {
+    names.push_back(wall.name);
+    found |= wall.name == name;
+  }
+  if (!found) throw UsageError(fmt::format("the data have no wall '{}'{}", name, suggestion(name, names)));
+  for (jam::Wall& wall : walls) {
+    if (wall.name == name)
+      wall.role = role;
+    else if (wall.role == role)
+      wall.role = jam::WallRole::other;
+  }
+}
+
+jam::SnapshotSource open_stored_run(const InputOptions& options) {
+  for (const std::string& path : options.paths) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) throw jam::DataError(path + ": cannot be read: no such file");
+    if (std::filesystem::is_directory(path, error))
+      throw jam::DataError(path + ": is a folder, expected a file of snapshots (run.h5)");
+  }
+  jam::SnapshotSource source;
+  if (options.map.empty()) {
+    source = jam::open_source(options.paths);
+  } else {
+    const jam::ImportMap map = read_map_file(options.map);
+    source = jam::open_source(options.paths, &map);
+  }
+  if (!options.blade.empty()) assign_role(source.info.walls, options.blade, jam::WallRole::blade);
+  if (!options.vessel.empty()) assign_role(source.info.walls, options.vessel, jam::WallRole::vessel);
+  return source;
+}
+
+jam::Criteria stored_run_criteria(const jam::RunInfo& info, const std::string& criteria_file,
+                                  const std::vector<std::string>& overrides) {
+  jam::Criteria criteria;
+  if (!info.case_toml.empty()) criteria = read_case_criteria(info.case_toml, "stored case");
+  if (!criteria_file.empty()) criteria = read_criteria_file(criteria_file, criteria);
+  return read_criteria_text("", "", criteria, overrides);
+}
+
+CaseTitle case_title(const jam::RunInfo& info) {
+  if (info.case_toml.empty()) return {};
+  const Document document(info.case_toml, "stored case", {});
+  return {document.table().at_path("case.name").value_or(std::string()),
+          document.table().at_path("case.description").value_or(std::string())};
+}
+
+}  // namespace jamscope

@@ -1,0 +1,201 @@
+// analyze, inspect and metrics on a small file written here.
+#include "apps/jamscope/stored_run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/outputs.hpp"
+#include "libdem/errors.hpp"
+#include "libjam/snapshot/writer.hpp"
+#include "tests/app/program.hpp"
+
+namespace jamscope {
+namespace {
+
+using testing::HasSubstr;
+
+jam::RunInfo sample_info() {
+  jam::RunInfo info;
+  info.creator = "test";
+  info.case_toml =
+      "[case]\nname = \"small\"\ndescription = \"two grains\"\n[analysis]\njam_force = \"10 N\"\n[bed]\nseed = 1\n";
+  info.dt = 1e-3;
+  info.materials = {{"glass", 2500, 63e9, 0.2}};
+  jam::Wall blade, vessel;
+  blade.name = "blade";
+  blade.kind = "plane";
+  blade.role = jam::WallRole::blade;
+  blade.axis = jam::Vec3::UnitX();
+  vessel.name = "vessel";
+  vessel.kind = "cylinder";
+  vessel.role = jam::WallRole::vessel;
+  vessel.radius = 12.5e-3;
+  info.walls = {blade, vessel};
+  info.gap = {11.75e-3, 12.5e-3, -3e-3, 3e-3};
+  info.wall_loads_known = false;
+  return info;
+}
+
+// Two grains that do not touch each other; the first one sits between blade and vessel and carries `force` from both.
+jam::Snapshot sample_frame(int frame, float force) {
+  jam::Snapshot s;
+  s.time = 2e-3 * frame;
+  s.step = 2 * static_cast<std::uint64_t>(frame);
+  s.particles.id = {0, 1};
+  s.particles.position = {{0.0121f, 0, 0}, {0, 0, 0}};
+  s.particles.radius = {4e-4f, 4e-4f};
+  s.pw.row = {0, 0};
+  s.pw.wall = {0, 1};
+  s.pw.normal_force = {force, force};
+  s.walls.resize(2);
+  return s;
+}
+
+// Five frames, the middle two above 2 * 15 N.
+void write_sample(const std::string& path) {
+  jam::SnapshotWriter writer = jam::SnapshotWriter::create(path, sample_info());
+  for (int frame = 0; frame < 5; ++frame) writer.append(sample_frame(frame, frame == 2 || frame == 3 ? 15.f : 1.f));
+}
+
+TEST(Analyze, FindsTheJamAndWritesAllResults) {
+  const Scratch scratch;
+  write_sample(scratch / "run.h5");
+  const Outcome outcome = run_program("analyze " + (scratch / "run.h5") + " -o " + (scratch / "jams"));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("1 jams above 10 N"));  // the threshold is that of the stored case
+  for (const char* name : {"jam.h5", "events.csv", "summary.json", "report.html"})
+    EXPECT_GT(std::filesystem::file_size(scratch / (std::string("jams/") + name)), 0u) << name;
+  const auto summary = nlohmann::json::parse(text_of(scratch / "jams/summary.json"));
+  EXPECT_EQ(summary["run"]["name"], "small");
+  EXPECT_EQ(summary["run"]["creator"], "test");
+  EXPECT_EQ(summary["run"]["results_by"]["inputs"][0], scratch / "run.h5");
+  EXPECT_EQ(summary["analysis"]["criteria"]["jam_force_N"], 10);
+  EXPECT_EQ(summary["analysis"]["jams"]["events"], 1);
+  EXPECT_EQ(summary["analysis"]["first_events"][0]["samples"], 2);
+  EXPECT_EQ(summary["analysis"]["first_events"][0]["peak_force_N"], 30);
+  EXPECT_EQ(summary["analysis"]["frames_by_jammed_particles"], (std::vector<int>{3, 2}));
+}
+
+TEST(Analyze, TheAnalysisPartDependsOnTheDataAlone) {
+  const Scratch scratch;
+  write_sample(scratch / "run.h5");
+  ASSERT_EQ(run_program("analyze -q " + (scratch / "run.h5") + " -o " + (scratch / "a")).code, 0);
+  ASSERT_EQ(run_program("analyze " + (scratch / "run.h5") + " -o " + (scratch / "b") + " --log-format jsonl").code, 0);
+  const auto analysis = [&](const std::string& folder) {
+    const std::string text = text_of(scratch / (folder + "/summary.json"));
+    return text.substr(text.find("\"analysis\""));
+  };
+  EXPECT_EQ(analysis("a"), analysis("b"));
+  EXPECT_EQ(text_of(scratch / "a/events.csv"), text_of(scratch / "b/events.csv"));
+}
+
+TEST(Analyze, CriteriaComeFromFileAndCommandLine) {
+  const Scratch scratch;
+  write_sample(scratch / "run.h5");
+  std::ofstream(scratch / "c.toml") << "[analysis]\njam_force = \"1 N\"\n";
+  const std::string run = "analyze " + (scratch / "run.h5");
+  EXPECT_THAT(run_program(run + " -o " + (scratch / "a") + " --criteria " + (scratch / "c.toml")).out,
+              HasSubstr("1 jams above 1 N"));
+  EXPECT_THAT(run_program(run + " -o " + (scratch / "b") + " --set jam_force='100 N'").out,
+              HasSubstr("no jams above 100 N"));
+  const Outcome bad = run_program(run + " -o " + (scratch / "d") + " --set jam_forces='100 N'");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_EQ(bad.err,
+            "error: --set analysis.jam_forces: unknown key 'jam_forces' in [analysis]; did you mean 'jam_force'?\n");
+  EXPECT_FALSE(std::filesystem::exists(scratch / "d"));
+}
+
+TEST(Analyze, DoesNotOverwriteUnlessTold) {
+  const Scratch scratch;
+  write_sample(scratch / "run.h5");
+  const std::string run = "analyze -q " + (scratch / "run.h5") + " -o " + (scratch / "jams");
+  ASSERT_EQ(run_program(run).code, 0);
+  std::ofstream(scratch / "jams/notes.txt") << "mine";
+  const Outcome again = run_program(run);
+  EXPECT_EQ(again.code, 2);
+  EXPECT_EQ(again.err, "error: " + (scratch / "jams") +
+                           " is not empty: choose another folder, or --overwrite to replace the results in it\n");
+  EXPECT_EQ(run_program(run + " --overwrite").code, 0);
+  EXPECT_EQ(text_of(scratch / "jams/notes.txt"), "mine");  // other files are left alone
+  std::ofstream(scratch / "file") << "x";
+  EXPECT_EQ(run_program("analyze -q " + (scratch / "run.h5") + " -o " + (scratch / "file")).code, 2);
+}
+
+TEST(Analyze, UnreadableDataExitsWith3AndMakesNoFolder) {
+  const Scratch scratch;
+  EXPECT_EQ(run_program("analyze " + (scratch / "none.h5") + " -o " + (scratch / "jams")).code, 3);
+  std::ofstream(scratch / "junk.h5") << "not a file of snapshots";
+  const Outcome junk = run_program("analyze " + (scratch / "junk.h5") + " -o " + (scratch / "jams"));
+  EXPECT_EQ(junk.code, 3);
+  EXPECT_THAT(junk.err, HasSubstr("error: " + (scratch / "junk.h5")));
+  EXPECT_EQ(run_program("analyze " + std::string(JAMSCOPE_DATA_DIR) + " -o " + (scratch / "jams")).code, 3);
+  EXPECT_FALSE(std::filesystem::exists(scratch / "jams"));
+}
+
+TEST(Analyze, RolesCanBeGivenByName) {
+  const Scratch scratch;
+  write_sample(scratch / "run.h5");
+  const std::string run = "analyze " + (scratch / "run.h5") + " -o " + (scratch / "jams");
+  const Outcome unknown = run_program(run + " --blade blad");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(unknown.err, "error: the data have no wall 'blad'; did you mean 'blade'?\n");
+  EXPECT_EQ(run_program(run + " --blade vessel").code, 2);  // leaves no vessel
+  EXPECT_EQ(run_program(run + " --blade vessel --vessel blade").code, 0);
+}
+
+TEST(AssignRole, MovesTheRole) {
+  std::vector<jam::Wall> walls = sample_info().walls;
+  assign_role(walls, "vessel", jam::WallRole::blade);
+  EXPECT_EQ(walls[0].role, jam::WallRole::other);
+  EXPECT_EQ(walls[1].role, jam::WallRole::blade);
+  EXPECT_THROW(assign_role(walls, "lid", jam::WallRole::blade), UsageError);
+}
+
+TEST(Inspect, SaysWhatIsInAFileAndWhatIsNot) {
+  const Scratch scratch;
+  write_sample(scratch / "run.h5");
+  const Outcome text = run_program("inspect " + (scratch / "run.h5"));
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("frames      5, 5 read"));
+  EXPECT_THAT(text.out, HasSubstr("blade: plane, role blade"));
+  EXPECT_THAT(text.out, HasSubstr("verdict     valid"));
+  const auto json = nlohmann::json::parse(run_program("inspect --json " + (scratch / "run.h5")).out);
+  EXPECT_EQ(json["valid"], true);
+  EXPECT_EQ(json["most_wall_contacts"], 2);
+  EXPECT_EQ(json["case"], "small");
+  EXPECT_THAT(json["missing"].get<std::vector<std::string>>(),
+              testing::IsSupersetOf({"particles/velocity", "contacts/pw/point", "series"}));
+  const auto quick = nlohmann::json::parse(run_program("inspect --quick --json " + (scratch / "run.h5")).out);
+  EXPECT_EQ(quick["frames_read"], 2);
+}
+
+TEST(Metrics, AreATableOfFrames) {
+  const Scratch scratch;
+  write_sample(scratch / "run.h5");
+  const Outcome csv = run_program("metrics " + (scratch / "run.h5") + " --metric coordination_with_walls,coordination");
+  EXPECT_EQ(csv.code, 0) << csv.err;
+  EXPECT_THAT(csv.out, testing::StartsWith("frame,time [s],coordination_with_walls [1],coordination [1]\n0,0,1,0\n"));
+  const Outcome one = run_program("metrics --frame 3 --format json --metric coordination " + (scratch / "run.h5"));
+  const auto json = nlohmann::json::parse(one.out);
+  ASSERT_EQ(json.size(), 1u);
+  EXPECT_EQ(json[0]["frame"], 3);
+  EXPECT_EQ(json[0]["coordination"], 0);
+  const Outcome unknown = run_program("metrics --metric cordination " + (scratch / "run.h5"));
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(unknown.err, "error: unknown metric 'cordination'; did you mean 'coordination'?\n");
+  EXPECT_EQ(run_program("metrics --frame 5 " + (scratch / "run.h5")).code, 2);
+}
+
+TEST(Summary, NumbersThatDoNotExistAreNull) {
+  const auto summary = nlohmann::json::parse(summary_json({}, {}, {}));
+  EXPECT_TRUE(summary["analysis"]["jams"]["mean_survival_time_s"].is_null());
+  EXPECT_EQ(summary["analysis"]["frames"], 0);
+  EXPECT_FALSE(summary["run"].contains("case_sha256"));
+}
+
+}  // namespace
+}  // namespace jamscope
