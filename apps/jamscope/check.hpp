@@ -7,7 +7,8 @@
 
 namespace jamscope {
 
-// The derived numbers as aligned text, warnings last.
+// The derived numbers as aligned text, warnings last. Throws dem::GeometryError where the blade is no closed surface or
+// touches the vessel.
 std::string check_text(const CaseFile& file);
 
 // The same for machines: numbers in SI units, under the names of the text in lower case with '_' for spaces.

@@ -62,7 +62,9 @@ void add_input(CLI::App& command, InputOptions& input) {
   command.add_option("INPUT", input.paths, "file of snapshots (run.h5), or another code's dumps with --map")
       ->required()
       ->type_name("");
+#if __has_include("apps/jamscope/map_file.hpp")
   command.add_option("--map", input.map, "TOML file that names the dumps' columns, units and walls")->type_name("FILE");
+#endif
   command.add_option("--blade", input.blade, "the wall that is the blade, whatever the data say")->type_name("NAME");
   command.add_option("--vessel", input.vessel, "the wall that is the vessel")->type_name("NAME");
 }
