@@ -62,9 +62,7 @@ void add_input(CLI::App& command, InputOptions& input) {
   command.add_option("INPUT", input.paths, "file of snapshots (run.h5), or another code's dumps with --map")
       ->required()
       ->type_name("");
-#if __has_include("apps/jamscope/map_file.hpp")
   command.add_option("--map", input.map, "TOML file that names the dumps' columns, units and walls")->type_name("FILE");
-#endif
   command.add_option("--blade", input.blade, "the wall that is the blade, whatever the data say")->type_name("NAME");
   command.add_option("--vessel", input.vessel, "the wall that is the vessel")->type_name("NAME");
 }
@@ -139,7 +137,6 @@ Command add_inspect(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("inspect", "say what a file holds, whether it is valid, what it lacks");
   add_input(c, o.inspect.input);
   c.add_flag("--json", o.inspect.json, "for machines");
-  c.add_flag("--quick", o.inspect.quick, "read only the first and the last frame");
   c.add_flag("-q,--quiet", o.inspect.quiet, "no progress");
   c.footer("Example:\n  jamscope inspect run/run.h5");
   return [&o] { return inspect(o.inspect); };

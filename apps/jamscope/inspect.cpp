@@ -4,10 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
+#include "apps/jamscope/console.hpp"
+#include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
 
 namespace jamscope {
@@ -15,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Name of each column that a source may lack, and whether this frame has it. A table without rows says nothing.
+// Columns that foreign data may lack, and whether this frame has them. A table without rows says nothing.
 struct Column {
   const char* name;
   std::size_t rows;
@@ -44,6 +47,65 @@ std::vector<Column> columns(const jam::Snapshot& s) {
           {"contacts/pw/flags", w, is(s.pw.flags, w)}};
 }
 
+void extend(jam::FileReport::Range& range, std::size_t value, bool first) {
+  range.min = first ? value : std::min<std::uint64_t>(range.min, value);
+  range.max = std::max<std::uint64_t>(range.max, value);
+  range.mean += static_cast<double>(value);  // divided by the number of frames in the end
+}
+
+// What inspect_file says of a snapshot file, said of foreign data: every frame is read.
+jam::FileReport foreign_report(const InputOptions& input, Console& console) {
+  const jam::SnapshotSource source = open_stored_run(input);
+  jam::FileReport report;
+  report.path = fmt::format("{}", fmt::join(input.paths, " "));
+  report.format = "foreign, read through " + input.map;
+  for (const std::string& path : input.paths) report.bytes += std::filesystem::file_size(path);
+  report.frames_begun = source.frames;
+  report.series_rows = source.series.size();
+  report.info = source.info;
+  report.warnings = source.warnings;
+
+  std::vector<std::pair<std::string, bool>> seen;  // column, present in some frame; only those with rows
+  Progress progress;
+  progress.stage = "read";
+  progress.unit = "frames";
+  progress.total = static_cast<double>(source.frames);
+  for (std::size_t k = 0; k < source.frames; ++k) {
+    progress.done = static_cast<double>(k + 1);
+    console.progress(progress);
+    try {
+      const jam::Snapshot s = source.read(k);
+      const bool first = report.frames == 0;
+      if (first) {
+        report.time_first = s.time;
+        report.step_first = s.step;
+      }
+      report.time_last = s.time;
+      report.step_last = s.step;
+      extend(report.particles, s.particles.size(), first);
+      extend(report.particle_contacts, s.pp.size(), first);
+      extend(report.wall_contacts, s.pw.size(), first);
+      for (const Column& column : columns(s)) {
+        if (column.rows == 0) continue;
+        auto at = std::find_if(seen.begin(), seen.end(), [&](const auto& entry) { return entry.first == column.name; });
+        if (at == seen.end()) at = seen.insert(seen.end(), {column.name, false});
+        at->second |= column.present;
+      }
+      ++report.frames;
+    } catch (const jam::DataError& error) {
+      report.problems.push_back(error.what());
+    }
+  }
+  const double frames = static_cast<double>(report.frames);
+  for (auto* range : {&report.particles, &report.particle_contacts, &report.wall_contacts})
+    if (report.frames > 0) range->mean /= frames;
+  if (report.frames > 1) report.interval = (report.time_last - report.time_first) / (frames - 1);
+  for (const auto& [name, present] : seen) (present ? report.present : report.absent).push_back(name);
+  if (!source.info.wall_loads_known) report.absent.push_back("walls/force, walls/torque");
+  if (report.series_rows == 0) report.absent.push_back("series");
+  return report;
+}
+
 const char* word(jam::WallRole role) {
   switch (role) {
     case jam::WallRole::blade:
@@ -56,141 +118,114 @@ const char* word(jam::WallRole role) {
   return "other";
 }
 
-struct Findings {
-  std::size_t read = 0;
-  double first_time = 0, last_time = 0;
-  std::uint64_t first_step = 0, last_step = 0;
-  std::size_t fewest_particles = 0, most_particles = 0, most_contacts = 0, most_wall_contacts = 0;
-  std::vector<std::string> missing;  // columns that no frame has
-  std::vector<std::string> broken;   // messages of frames that cannot be read
-};
-
-Findings look(const jam::SnapshotSource& source, bool quick, Console& console) {
-  Findings f;
-  std::vector<std::pair<std::string, bool>> seen;  // column, present in some frame; only those with rows
-  Progress progress;
-  progress.stage = "read";
-  progress.unit = "frames";
-  progress.total = static_cast<double>(source.frames);
-  for (std::size_t k = 0; k < source.frames; ++k) {
-    if (quick && k != 0 && k + 1 != source.frames) continue;
-    progress.done = static_cast<double>(k + 1);
-    console.progress(progress);
-    try {
-      const jam::Snapshot s = source.read(k);
-      if (f.read == 0) {
-        f.first_time = s.time;
-        f.first_step = s.step;
-        f.fewest_particles = s.particles.size();
-      }
-      f.last_time = s.time;
-      f.last_step = s.step;
-      f.fewest_particles = std::min(f.fewest_particles, s.particles.size());
-      f.most_particles = std::max(f.most_particles, s.particles.size());
-      f.most_contacts = std::max(f.most_contacts, s.pp.size());
-      f.most_wall_contacts = std::max(f.most_wall_contacts, s.pw.size());
-      for (const Column& column : columns(s)) {
-        if (column.rows == 0) continue;
-        auto at = std::find_if(seen.begin(), seen.end(), [&](const auto& entry) { return entry.first == column.name; });
-        if (at == seen.end()) at = seen.insert(seen.end(), {column.name, false});
-        at->second |= column.present;
-      }
-      ++f.read;
-    } catch (const jam::DataError& error) {
-      f.broken.push_back(error.what());
-    }
+// A damaged file may hold a damaged case.
+CaseTitle title_of(const jam::RunInfo& info) {
+  try {
+    return case_title(info);
+  } catch (const dem::CaseError&) {
+    return {};
   }
-  for (const auto& [name, present] : seen)
-    if (!present) f.missing.push_back(name);
-  if (!source.info.wall_loads_known) f.missing.push_back("walls/force and torque");
-  if (source.series.size() == 0) f.missing.push_back("series");
-  if (!(source.info.gap.tip_radius > 0)) f.missing.push_back("gap");
-  if (source.info.materials.empty()) f.missing.push_back("materials");
-  if (source.info.case_toml.empty()) f.missing.push_back("case");
-  return f;
 }
 
-std::string text_of(const jam::SnapshotSource& source, const Findings& f, const CaseTitle& title) {
-  const jam::RunInfo& info = source.info;
+std::string range_text(const jam::FileReport::Range& range) {
+  return range.min == range.max ? fmt::format("{}", range.max) : fmt::format("{} to {}", range.min, range.max);
+}
+
+}  // namespace
+
+std::string inspection_text(const jam::FileReport& r) {
   std::string text;
   const auto row = [&](const char* name, const std::string& value) {
-    if (!value.empty()) text += fmt::format("{:<12}{}\n", name, value);
+    if (value.find_first_not_of(' ') != std::string::npos) text += fmt::format("{:<12}{}\n", name, value);
   };
-  row("creator", fmt::format("{} {} {}", info.creator, info.creator_version, info.commit));
-  row("created", info.created_utc);
+  const CaseTitle title = title_of(r.info);
+  row("file", r.path);
+  row("format", fmt::format("{} {}, {:.3g} MB", r.format, r.version, 1e-6 * static_cast<double>(r.bytes)));
+  row("creator", fmt::format("{} {} {}", r.info.creator, r.info.creator_version, r.info.commit));
+  row("created", r.info.created_utc);
   row("case", title.name.empty() ? "" : fmt::format("{}: {}", title.name, title.description));
-  row("frames", fmt::format("{}, {} read", source.frames, f.read));
-  if (f.read > 0) {
+  row("frames", r.frames == r.frames_begun ? fmt::format("{}", r.frames)
+                                           : fmt::format("{} complete of {}", r.frames, r.frames_begun));
+  if (r.frames > 0) {
     row("time",
-        fmt::format("{:.6g} to {:.6g} s, steps {} to {}", f.first_time, f.last_time, f.first_step, f.last_step));
-    row("particles", f.fewest_particles == f.most_particles
-                         ? fmt::format("{}", f.most_particles)
-                         : fmt::format("{} to {}", f.fewest_particles, f.most_particles));
-    row("contacts", fmt::format("at most {} between particles, {} with walls", f.most_contacts, f.most_wall_contacts));
+        fmt::format("{:.6g} to {:.6g} s, steps {} to {}", r.time_first, r.time_last, r.step_first, r.step_last));
+    row("particles", range_text(r.particles));
+    row("contacts", fmt::format("{} between particles, {} with walls", range_text(r.particle_contacts),
+                                range_text(r.wall_contacts)));
   }
-  for (const jam::Wall& wall : info.walls)
+  for (const jam::Wall& wall : r.info.walls)
     row("wall", fmt::format("{}: {}, role {}{}", wall.name, wall.kind, word(wall.role),
                             wall.triangles.empty() ? "" : fmt::format(", {} triangles", wall.triangles.size())));
-  for (const jam::Material& m : info.materials)
+  for (const jam::Material& m : r.info.materials)
     row("material", fmt::format("{}: {:g} kg/m3, {:g} Pa, Poisson {:g}", m.name, m.density, m.young, m.poisson));
-  if (info.gap.tip_radius > 0)
-    row("gap", fmt::format("{:.4g} mm, tip radius {:.4g} mm", 1e3 * (info.gap.vessel_radius - info.gap.tip_radius),
-                           1e3 * info.gap.tip_radius));
-  row("series", source.series.size() == 0 ? "" : fmt::format("{} rows", source.series.size()));
-  row("missing", fmt::format("{}", fmt::join(f.missing, ", ")));
-  for (const std::string& warning : source.warnings) row("warning", warning);
-  for (const std::string& broken : f.broken) row("invalid", broken);
-  row("verdict", f.broken.empty() ? "valid" : fmt::format("{} frames are invalid", f.broken.size()));
+  const jam::Gap& gap = r.info.gap;
+  row("gap", gap.tip_radius > 0 ? fmt::format("{:.4g} mm, tip radius {:.4g} mm",
+                                              1e3 * (gap.vessel_radius - gap.tip_radius), 1e3 * gap.tip_radius)
+                                : "");
+  row("series", r.series_rows == 0 ? "" : fmt::format("{} rows", r.series_rows));
+  row("absent", fmt::format("{}", fmt::join(r.absent, ", ")));
+  for (const std::string& warning : r.warnings) row("warning", warning);
+  for (const std::string& problem : r.problems) row("damaged", problem);
+  row("verdict", r.valid() ? "valid" : "not valid");
   return text;
 }
 
-std::string json_of(const jam::SnapshotSource& source, const Findings& f, const CaseTitle& title) {
-  const jam::RunInfo& info = source.info;
+std::string inspection_json(const jam::FileReport& r) {
+  const auto range = [](const jam::FileReport::Range& x) {
+    return Json{{"min", x.min}, {"max", x.max}, {"mean", x.mean}};
+  };
   Json walls = Json::array(), materials = Json::array();
-  for (const jam::Wall& wall : info.walls)
+  for (const jam::Wall& wall : r.info.walls)
     walls.push_back({{"name", wall.name},
                      {"kind", wall.kind},
                      {"role", word(wall.role)},
                      {"material", wall.material},
                      {"triangles", wall.triangles.size()}});
-  for (const jam::Material& m : info.materials)
+  for (const jam::Material& m : r.info.materials)
     materials.push_back(
         {{"name", m.name}, {"density_kg_m3", m.density}, {"young_Pa", m.young}, {"poisson", m.poisson}});
-  const Json json{{"valid", f.broken.empty()},
-                  {"creator", info.creator},
-                  {"creator_version", info.creator_version},
-                  {"commit", info.commit},
-                  {"created_utc", info.created_utc},
-                  {"case", title.name},
-                  {"case_sha256", info.case_sha256},
-                  {"frames", source.frames},
-                  {"frames_read", f.read},
-                  {"first_time_s", f.first_time},
-                  {"last_time_s", f.last_time},
-                  {"first_step", f.first_step},
-                  {"last_step", f.last_step},
-                  {"fewest_particles", f.fewest_particles},
-                  {"most_particles", f.most_particles},
-                  {"most_particle_contacts", f.most_contacts},
-                  {"most_wall_contacts", f.most_wall_contacts},
+  const Json json{{"valid", r.valid()},
+                  {"file", r.path},
+                  {"format", r.format},
+                  {"version", r.version},
+                  {"bytes", r.bytes},
+                  {"closed", r.closed},
+                  {"creator", r.info.creator},
+                  {"creator_version", r.info.creator_version},
+                  {"commit", r.info.commit},
+                  {"created_utc", r.info.created_utc},
+                  {"case", title_of(r.info).name},
+                  {"case_sha256", r.info.case_sha256},
+                  {"frames", r.frames},
+                  {"frames_begun", r.frames_begun},
+                  {"first_time_s", r.time_first},
+                  {"last_time_s", r.time_last},
+                  {"first_step", r.step_first},
+                  {"last_step", r.step_last},
+                  {"interval_s", r.interval},
+                  {"particles", range(r.particles)},
+                  {"particle_contacts", range(r.particle_contacts)},
+                  {"wall_contacts", range(r.wall_contacts)},
+                  {"series_rows", r.series_rows},
                   {"walls", walls},
                   {"materials", materials},
-                  {"series_rows", source.series.size()},
-                  {"missing", f.missing},
-                  {"warnings", source.warnings},
-                  {"invalid", f.broken}};
+                  {"present", r.present},
+                  {"absent", r.absent},
+                  {"warnings", r.warnings},
+                  {"problems", r.problems}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace
-
 int inspect(const InspectOptions& options) {
-  Console console(stderr, LogFormat::text, options.quiet || options.json);
-  const jam::SnapshotSource source = open_stored_run(options.input);
-  const Findings findings = look(source, options.quick, console);
-  const CaseTitle title = case_title(source.info);
-  fmt::print("{}", options.json ? json_of(source, findings, title) : text_of(source, findings, title));
-  return findings.broken.empty() ? 0 : 3;
+  jam::FileReport report;
+  if (options.input.map.empty() && options.input.paths.size() == 1) {
+    report = jam::inspect_file(options.input.paths.front());
+  } else {
+    Console console(stderr, LogFormat::text, options.quiet || options.json);
+    report = foreign_report(options.input, console);
+  }
+  fmt::print("{}", options.json ? inspection_json(report) : inspection_text(report));
+  return report.valid() ? 0 : 3;
 }
 
 }  // namespace jamscope

@@ -6,10 +6,8 @@
 
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/errors.hpp"
-#include "apps/jamscope/toml_reader.hpp"
-#if __has_include("apps/jamscope/map_file.hpp")
 #include "apps/jamscope/map_file.hpp"
-#endif
+#include "apps/jamscope/toml_reader.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/snapshot/open_source.hpp"
 
@@ -42,10 +40,8 @@ jam::SnapshotSource open_stored_run(const InputOptions& options) {
   if (options.map.empty()) {
     source = jam::open_source(options.paths);
   } else {
-#if __has_include("apps/jamscope/map_file.hpp")
     const jam::ImportMap map = read_map_file(options.map);
     source = jam::open_source(options.paths, &map);
-#endif
   }
   if (!options.blade.empty()) assign_role(source.info.walls, options.blade, jam::WallRole::blade);
   if (!options.vessel.empty()) assign_role(source.info.walls, options.vessel, jam::WallRole::vessel);

@@ -160,17 +160,40 @@ TEST(Inspect, SaysWhatIsInAFileAndWhatIsNot) {
   write_sample(scratch / "run.h5");
   const Outcome text = run_program("inspect " + (scratch / "run.h5"));
   EXPECT_EQ(text.code, 0) << text.err;
-  EXPECT_THAT(text.out, HasSubstr("frames      5, 5 read"));
+  EXPECT_THAT(text.out, HasSubstr("frames      5\n"));
+  EXPECT_THAT(text.out, HasSubstr("case        small: two grains\n"));
   EXPECT_THAT(text.out, HasSubstr("blade: plane, role blade"));
   EXPECT_THAT(text.out, HasSubstr("verdict     valid"));
   const auto json = nlohmann::json::parse(run_program("inspect --json " + (scratch / "run.h5")).out);
   EXPECT_EQ(json["valid"], true);
-  EXPECT_EQ(json["most_wall_contacts"], 2);
-  EXPECT_EQ(json["case"], "small");
-  EXPECT_THAT(json["missing"].get<std::vector<std::string>>(),
-              testing::IsSupersetOf({"particles/velocity", "contacts/pw/point", "series"}));
-  const auto quick = nlohmann::json::parse(run_program("inspect --quick --json " + (scratch / "run.h5")).out);
-  EXPECT_EQ(quick["frames_read"], 2);
+  EXPECT_EQ(json["wall_contacts"]["max"], 2);
+  EXPECT_EQ(json["frames"], 5);
+  EXPECT_THAT(json["absent"].get<std::vector<std::string>>(), testing::Contains(HasSubstr("particles/velocity")));
+}
+
+TEST(Inspect, DamagedAndForeignFilesExitWith3AndSayWhy) {
+  const Scratch scratch;
+  std::ofstream(scratch / "junk") << "not a file of snapshots";
+  const Outcome junk = run_program("inspect " + (scratch / "junk"));
+  EXPECT_EQ(junk.code, 3);
+  EXPECT_THAT(junk.out, HasSubstr("verdict     not valid"));
+  EXPECT_EQ(run_program("inspect " + (scratch / "none")).code, 3);
+  write_sample(scratch / "run.h5");
+  std::filesystem::resize_file(scratch / "run.h5", std::filesystem::file_size(scratch / "run.h5") / 2);
+  const Outcome cut = run_program("inspect " + (scratch / "run.h5"));
+  EXPECT_EQ(cut.code, 3);
+  EXPECT_THAT(cut.out, HasSubstr("damaged"));
+}
+
+TEST(Inspect, ReadsForeignDataThroughTheirMap) {
+  const std::string formats = std::string(JAMSCOPE_DATA_DIR) + "/formats/";
+  const Outcome outcome = run_program("inspect --json " + formats + "liggghts.particles.dump.xz " + formats +
+                                      "liggghts.pair.local.xz " + formats + "liggghts.wall.local.xz " + formats +
+                                      "liggghts.blade.txt.xz --map " + JAMSCOPE_DATA_DIR + "/maps/liggghts.toml");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_GT(json["frames"].get<int>(), 0);
+  EXPECT_GT(json["particle_contacts"]["max"].get<int>(), 0);
 }
 
 TEST(Metrics, AreATableOfFrames) {
