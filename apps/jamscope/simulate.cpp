@@ -1,0 +1,282 @@
+#include "apps/jamscope/simulate.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "apps/jamscope/analyze.hpp"
+#include "apps/jamscope/case_file.hpp"
+#include "apps/jamscope/checkpoint.hpp"
+#include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/outputs.hpp"
+#include "apps/jamscope/sha256.hpp"
+#include "apps/jamscope/simulation_view.hpp"
+#include "libdem/case/check_case.hpp"
+#include "libdem/errors.hpp"
+#include "libjam/errors.hpp"
+#include "libjam/snapshot/reader.hpp"
+#include "libjam/snapshot/writer.hpp"
+#include "libjam/snapshot/xdmf.hpp"
+
+namespace jamscope {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+struct Interrupted {};
+
+// How many steps lie between two records; at least one.
+std::uint64_t steps_in(double interval, double step) {
+  return std::uint64_t(std::max(1.0, std::round(interval / step)));
+}
+
+dem::SettledBed settled_bed(const CaseFile& file, const dem::Rheometer& rheometer, const std::string& cache,
+                            Console& console) {
+  const dem::Case& c = file.physics;
+  const double vessel_radius = 0.5 * c.vessel.diameter;
+  const std::string key = bed_key(rheometer.setup, c.bed, vessel_radius);
+  const std::string path = cache.empty() ? "" : (std::filesystem::path(cache) / ("bed-" + key.substr(0, 16) + ".h5")).string();
+  if (!path.empty()) {
+    try {
+      if (auto bed = read_bed(path, key)) {
+        console.note(fmt::format("settled bed of {} grains from {}", bed->report.grains, path));
+        return *bed;
+      }
+    } catch (const jam::DataError& e) {
+      console.warning(fmt::format("stored bed not used, settling again: {}", e.what()));
+    }
+  }
+  const auto begin = Clock::now();
+  Progress progress;
+  progress.unit = "s";
+  const auto report = [&](const dem::BedProgress& p) {
+    if (!console.due()) return;
+    progress.stage = "bed: " + p.stage;
+    progress.done = p.time;
+    progress.total = p.end;
+    console.progress(progress);
+  };
+  dem::SettledBed bed;
+  try {
+    bed = dem::make_bed(rheometer.setup, c.bed, std::uint8_t(dem::material_index(c, c.bed.material)), vessel_radius,
+                        report, [] { return stop_requested(); });
+  } catch (const dem::BedInterrupted&) {
+    throw Interrupted{};
+  }
+  const dem::BedReport& r = bed.report;
+  console.note(fmt::format(
+      "bed of {} grains settled in {}: solid fraction {:.3f}, coordination {:.2f}, kinetic energy {:.2g} J (rest: below "
+      "{:.2g} J), largest overlap {:.2g} R, top at {:.2f} mm",
+      r.grains, duration_text(seconds_since(begin)), r.solid_fraction, r.coordination, r.kinetic_energy, r.rest_scale,
+      r.largest_overlap, 1e3 * r.top));
+  if (!path.empty()) {
+    try {
+      write_bed(path, bed, key);
+    } catch (const jam::DataError& e) {
+      console.warning(fmt::format("the settled bed could not be stored for the next run: {}", e.what()));
+    }
+  }
+  return bed;
+}
+
+// A run from its first to its last frame: libdem steps, every frame goes into the file and into the analysis.
+class Run {
+ public:
+  Run(const SimulateOptions& options, const CaseFile& file, Console& console)
+      : options_(options),
+        file_(file),
+        console_(console),
+        folder_(options.output),
+        sha_(sha256_hex(file.text)),
+        rheometer_(dem::make_rheometer(file.physics)),
+        info_(run_info(file, rheometer_, options.command_line)),
+        pipeline_(info_, file.criteria) {
+    rheometer_.setup.watch_force = file.criteria.jam_force;
+  }
+
+  void begin() {
+    dem::SettledBed bed = settled_bed(file_, rheometer_, options_.bed_cache, console_);
+    writer_.emplace(jam::SnapshotWriter::create(snapshots(), info_));
+    simulation_.emplace(rheometer_.setup, std::move(bed.state));
+    record_frame();
+    save();
+  }
+
+  // Frames after the checkpoint are dropped; those before it go through the analysis again.
+  void resume() {
+    Checkpoint checkpoint = read_checkpoint(restart());
+    if (checkpoint.case_sha256 != sha_)
+      throw UsageError(restart() + ": belongs to another case, expected case_sha256 " + sha_ + ", got " + checkpoint.case_sha256);
+    writer_.emplace(jam::SnapshotWriter::resume(snapshots(), checkpoint.state.step));
+    info_ = writer_->info();
+    const jam::SnapshotSource stored = jam::open_jamscope_file(snapshots());
+    for (std::size_t k = 0; k < stored.frames; ++k) pipeline_.add(stored.read(k));
+    series_ = stored.series;
+    pending_ = std::move(checkpoint.pending);
+    append(series_, pending_);
+    simulation_.emplace(rheometer_.setup, std::move(checkpoint.state));
+    console_.note(fmt::format("resumed at t = {:.6g} s, step {}, with {} frames", simulation_->time(), simulation_->step(), stored.frames));
+  }
+
+  // Returns false where a stop signal ended it early.
+  bool advance() {
+    const dem::Case& c = file_.physics;
+    const double end = std::min(c.duration, options_.until.value_or(c.duration));
+    const std::uint64_t last = std::uint64_t(std::llround(end / c.step));
+    const std::uint64_t frame = steps_in(c.output.frame_interval, c.step);
+    const std::uint64_t window = std::min(steps_in(c.output.series_interval, c.step), frame);
+    const std::uint64_t checkpoint = steps_in(c.output.checkpoint_interval, c.step);
+    first_step_ = simulation_->step();
+    begin_ = Clock::now();
+    std::uint64_t next_checkpoint = (simulation_->step() / checkpoint + 1) * checkpoint;
+    while (simulation_->step() < last) {
+      if (stop_requested()) {
+        save();
+        return false;
+      }
+      const std::uint64_t step = simulation_->step();
+      const std::uint64_t target = std::min({(step / window + 1) * window, (step / frame + 1) * frame, last});
+      simulation_->advance(target - step);
+      const dem::Window row = simulation_->take_window();
+      append(pending_, row);
+      append(series_, row);
+      largest_overlap_ = row.largest_overlap;
+      largest_force_ = row.largest_compressive_force;
+      jammed_ = row.most_watched;
+      if (target % frame == 0 || target == last) record_frame();
+      if (target >= next_checkpoint) {
+        save();
+        next_checkpoint = (target / checkpoint + 1) * checkpoint;
+      }
+      if (console_.due()) console_.progress(progress(end));
+    }
+    console_.finished(progress(end));
+    save();
+    return true;
+  }
+
+  // What the disk should hold of a run that the physics stopped: its last state where that can be written, and the results.
+  void keep_what_there_is() noexcept {
+    if (!simulation_ || !writer_) return;
+    try {
+      if (simulation_->step() > writer_->last_step()) record_frame();
+    } catch (const std::exception& e) {
+      console_.warning(fmt::format("the last state could not be recorded: {}", e.what()));
+    }
+    try {
+      write_results();
+    } catch (const std::exception& e) {
+      console_.warning(fmt::format("the results could not be written: {}", e.what()));
+    }
+  }
+
+  jam::Analysis write_results() {
+    const jam::Analysis analysis = pipeline_.finish(series_);
+    RunFacts facts = facts_of_this_process(options_.command_line);
+    facts.name = file_.physics.name;
+    facts.description = file_.physics.description;
+    facts.inputs = {options_.case_path};
+    facts.threads = options_.threads;
+    facts.wall_seconds = seconds_since(begin_);
+    facts.particle_steps_per_second = speed();
+    facts.warnings = file_.warnings;
+    jam::write_xdmf(folder_ / "run.xdmf", folder_ / "run.h5");
+    write_outputs(folder_.string(), info_, analysis, series_, facts);
+    return analysis;
+  }
+
+  double time() const { return simulation_->time(); }
+
+ private:
+  std::string snapshots() const { return (folder_ / "run.h5").string(); }
+  std::string restart() const { return (folder_ / "run.restart.h5").string(); }
+
+  void record_frame() {
+    const jam::Snapshot frame = snapshot(simulation_->view());
+    writer_->append(frame, pending_);
+    pending_ = jam::Series{};
+    pipeline_.add(frame);
+  }
+
+  void save() { write_checkpoint(restart(), {simulation_->state(), pending_, sha_}); }
+
+  double speed() const {
+    return double(simulation_->step() - first_step_) * double(simulation_->particles().size()) / seconds_since(begin_);
+  }
+
+  Progress progress(double end) const {
+    Progress p;
+    p.stage = "simulate";
+    p.unit = "s";
+    p.done = simulation_->time();
+    p.total = end;
+    p.step = simulation_->step();
+    p.particle_steps_per_second = speed();
+    p.steps_per_second = p.particle_steps_per_second / double(simulation_->particles().size());
+    p.contacts = simulation_->contacts();
+    p.largest_overlap = largest_overlap_;
+    p.largest_force = largest_force_;
+    p.jammed = jammed_;
+    p.events = pipeline_.events_so_far();
+    return p;
+  }
+
+  const SimulateOptions& options_;
+  const CaseFile& file_;
+  Console& console_;
+  std::filesystem::path folder_;
+  std::string sha_;
+  dem::Rheometer rheometer_;
+  jam::RunInfo info_;
+  jam::Pipeline pipeline_;
+  std::optional<jam::SnapshotWriter> writer_;
+  std::optional<dem::Simulation> simulation_;
+  jam::Series series_, pending_;  // of the whole run; since the last frame
+  double largest_overlap_ = 0, largest_force_ = 0;
+  std::uint32_t jammed_ = 0;
+  std::uint64_t first_step_ = 0;
+  Clock::time_point begin_ = Clock::now();
+};
+
+}  // namespace
+
+int simulate(const SimulateOptions& options) {
+  Console console(stderr, options.log_format, options.quiet);
+  const CaseFile file = read_case_file(options.case_path, options.overrides);
+  for (const std::string& warning : file.warnings) console.warning(warning);
+  omp_set_num_threads(std::max(options.threads, 1));
+  catch_stop_signals();
+
+  Run run(options, file, console);
+  try {
+    if (options.resume) {
+      run.resume();
+    } else {
+      prepare_folder(options.output, options.overwrite);
+      run.begin();
+    }
+    const bool whole = run.advance();
+    const jam::Analysis analysis = run.write_results();
+    if (!options.quiet) {
+      if (!whole)
+        fmt::print("stopped at t = {:.6g} s; the same command with --resume goes on from there\n", run.time());
+      fmt::print("{}results in {}, report in {}\n", result_text(analysis), options.output,
+                 (std::filesystem::path(options.output) / "report.html").string());
+    }
+    return 0;
+  } catch (const dem::PhysicsError&) {
+    run.keep_what_there_is();
+    throw;
+  } catch (const Interrupted&) {
+    console.note("interrupted while the bed was settling; nothing was simulated yet");
+    return 0;
+  }
+}
+
+}  // namespace jamscope

@@ -1,0 +1,166 @@
+#include "apps/jamscope/simulation_view.hpp"
+
+#include <algorithm>
+#include <jamscope/version.hpp>
+#include <numeric>
+
+#include "apps/jamscope/outputs.hpp"
+#include "apps/jamscope/sha256.hpp"
+
+namespace jamscope {
+namespace {
+
+jam::WallRole role_of(std::size_t wall) {
+  return wall == dem::wall_blade ? jam::WallRole::blade : jam::WallRole::vessel;
+}
+
+jam::Wall wall_info(const dem::Wall& wall, jam::WallRole role, const std::string& material) {
+  jam::Wall info;
+  info.name = wall.name;
+  info.role = role;
+  info.material = material;
+  if (const auto* plane = std::get_if<dem::Plane>(&wall.shape)) {
+    info.kind = "plane";
+    info.point = plane->point;
+    info.axis = plane->normal;
+  } else if (const auto* cylinder = std::get_if<dem::CylinderInside>(&wall.shape)) {
+    info.kind = "cylinder";
+    info.point = cylinder->point;
+    info.axis = cylinder->axis;
+    info.radius = cylinder->radius;
+  } else {
+    info.kind = "mesh";
+    const dem::TriangleMesh& mesh = std::get<dem::MeshWall>(wall.shape).finder->mesh();
+    info.vertices = mesh.vertices;
+    info.triangles = mesh.triangles;
+    for (const dem::FacetLabel label : mesh.labels) info.triangle_label.push_back(std::uint8_t(label));
+  }
+  return info;
+}
+
+std::uint8_t contact_flags(bool sliding, double overlap) {
+  return std::uint8_t((sliding ? jam::contact_sliding : 0) | (overlap < 0 ? jam::contact_neck : 0));
+}
+
+jam::Vec3f single(const dem::Vec3& v) { return v.cast<float>(); }
+
+}  // namespace
+
+jam::RunInfo run_info(const CaseFile& file, const dem::Rheometer& rheometer, const std::vector<std::string>& argv) {
+  const dem::Setup& setup = rheometer.setup;
+  jam::RunInfo info;
+  info.creator = "jamscope";
+  info.creator_version = version;
+  info.commit = commit;
+  info.created_utc = utc_now();
+  info.case_toml = file.text;
+  info.case_sha256 = sha256_hex(file.text);
+  info.argv = argv;
+  info.seed = file.physics.bed.seed;
+  info.gravity = setup.gravity;
+  info.dt = setup.step;
+  for (const dem::Material& m : setup.materials) info.materials.push_back({m.name, m.density, m.young, m.poisson});
+  for (const auto& row : setup.interactions) {
+    info.interactions.emplace_back();
+    for (const dem::Interaction& i : row)
+      info.interactions.back().push_back({i.restitution, i.friction, i.rolling_friction, i.work_of_adhesion});
+  }
+  for (std::size_t w = 0; w < setup.walls.size(); ++w)
+    info.walls.push_back(wall_info(setup.walls[w], role_of(w), setup.materials[setup.walls[w].material].name));
+  info.gap = {rheometer.tip_radius, 0.5 * file.physics.vessel.diameter, rheometer.blade_low, rheometer.blade_high};
+  return info;
+}
+
+jam::Snapshot snapshot(const dem::View& view) {
+  jam::Snapshot s;
+  s.time = view.time;
+  s.step = view.step;
+  jam::Particles& p = s.particles;
+  p.id = view.id;
+  p.material = view.material;
+  p.radius.assign(view.radius.begin(), view.radius.end());
+  p.compressive_force.assign(view.compressive_force.begin(), view.compressive_force.end());
+  for (std::size_t i = 0; i < view.id.size(); ++i) {
+    p.position.push_back(single(view.position[i]));
+    p.velocity.push_back(single(view.velocity[i]));
+    p.angular_velocity.push_back(single(view.angular_velocity[i]));
+  }
+  for (const dem::PairRecord& c : view.pairs) {
+    s.pp.row.push_back({c.i, c.j});
+    s.pp.normal_force.push_back(float(c.elastic));
+    s.pp.damping_force.push_back(float(c.damping));
+    s.pp.tangential_force.push_back(single(c.tangential));
+    s.pp.overlap.push_back(float(c.overlap));
+    s.pp.birth_step.push_back(c.birth_step);
+    s.pp.flags.push_back(contact_flags(c.sliding, c.overlap));
+  }
+  std::vector<std::size_t> order(view.wall_pairs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const dem::WallRecord &x = view.wall_pairs[a], &y = view.wall_pairs[b];
+    return std::tie(x.i, x.wall, x.facet) < std::tie(y.i, y.wall, y.facet);
+  });
+  for (const std::size_t k : order) {
+    const dem::WallRecord& c = view.wall_pairs[k];
+    s.pw.row.push_back(c.i);
+    s.pw.wall.push_back(std::uint8_t(c.wall));
+    s.pw.facet.push_back(c.facet);
+    s.pw.feature.push_back(std::uint8_t(c.feature));
+    s.pw.point.push_back(single(c.point));
+    s.pw.normal.push_back(single(c.normal));
+    s.pw.normal_force.push_back(float(c.elastic));
+    s.pw.damping_force.push_back(float(c.damping));
+    s.pw.tangential_force.push_back(single(c.tangential));
+    s.pw.overlap.push_back(float(c.overlap));
+    s.pw.birth_step.push_back(c.birth_step);
+    s.pw.flags.push_back(contact_flags(c.sliding, c.overlap));
+  }
+  for (const dem::WallInstant& w : view.walls)
+    s.walls.push_back({w.pose.position, w.pose.orientation, w.pose.velocity, w.pose.angular_velocity, w.force, w.torque});
+  return s;
+}
+
+void append(jam::Series& series, const dem::Window& window) {
+  series.time.push_back(window.time);
+  series.step.push_back(window.last_step);
+  series.largest_compressive_force.push_back(float(window.largest_compressive_force));
+  series.jammed_count.push_back(window.most_watched);
+  series.kinetic_energy.push_back(window.kinetic_energy);
+  series.largest_overlap.push_back(window.largest_overlap);
+  series.walls.resize(window.walls.size());
+  for (std::size_t w = 0; w < window.walls.size(); ++w) {
+    const dem::Window::Load& load = window.walls[w];
+    jam::Series::WallSeries& wall = series.walls[w];
+    wall.force.push_back(load.force);
+    wall.torque.push_back(load.torque);
+    wall.force_min.push_back(load.force_min);
+    wall.force_max.push_back(load.force_max);
+    wall.torque_min.push_back(load.torque_min);
+    wall.torque_max.push_back(load.torque_max);
+    wall.power.push_back(load.power);
+  }
+}
+
+void append(jam::Series& series, const jam::Series& more) {
+  const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  add(series.time, more.time);
+  add(series.step, more.step);
+  add(series.largest_compressive_force, more.largest_compressive_force);
+  add(series.jammed_count, more.jammed_count);
+  add(series.kinetic_energy, more.kinetic_energy);
+  add(series.largest_overlap, more.largest_overlap);
+  if (series.walls.size() < more.walls.size()) series.walls.resize(more.walls.size());
+  for (std::size_t w = 0; w < more.walls.size(); ++w) {
+    jam::Series::WallSeries& to = series.walls[w];
+    const jam::Series::WallSeries& from = more.walls[w];
+    add(to.force, from.force);
+    add(to.torque, from.torque);
+    add(to.force_min, from.force_min);
+    add(to.force_max, from.force_max);
+    add(to.torque_min, from.torque_min);
+    add(to.torque_max, from.torque_max);
+    add(to.power, from.power);
+  }
+}
+
+}  // namespace jamscope

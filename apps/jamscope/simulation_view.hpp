@@ -1,0 +1,21 @@
+// The glue between the libraries: what libdem shows of a run, in libjam's terms.
+#pragma once
+#include "apps/jamscope/case_file.hpp"
+#include "libdem/rheometer/rheometer.hpp"
+#include "libdem/simulation/simulation.hpp"
+#include "libjam/snapshot/snapshot.hpp"
+
+namespace jamscope {
+
+// Everything a snapshot file says once about its run.
+jam::RunInfo run_info(const CaseFile& file, const dem::Rheometer& rheometer, const std::vector<std::string>& argv);
+
+// One frame, rounded to the file's precision.
+jam::Snapshot snapshot(const dem::View& view);
+
+// Adds one row.
+void append(jam::Series& series, const dem::Window& window);
+// Adds all rows of `more`.
+void append(jam::Series& series, const jam::Series& more);
+
+}  // namespace jamscope
