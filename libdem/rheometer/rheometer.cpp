@@ -2,17 +2,13 @@
 
 #include <cmath>
 
-#include "libdem/case/derived.hpp"
-#include "libdem/errors.hpp"
-#include "libdem/geometry/twisted_blade.hpp"
-#include "libdem/geometry/validate_mesh.hpp"
+#include "libdem/geometry/blade_surface.hpp"
 
 namespace dem {
 
 Rheometer make_rheometer(const Case& c) {
-  TriangleMesh mesh = make_twisted_blade(std::get<TwistedBlade>(c.blade.shape));
-  validate_mesh(mesh, "blade");
-  const BladeExtent extent = blade_extent(mesh);
+  BladeSurface surface = blade_surface(c);
+  const BladeExtent& extent = surface.extent;
 
   Rheometer rheometer;
   rheometer.tip_radius = extent.tip_radius;
@@ -36,7 +32,7 @@ Rheometer make_rheometer(const Case& c) {
   setup.walls = {
       Wall{"floor", vessel, Plane{Vec3::Zero(), Vec3::UnitZ()}, {}},
       Wall{"cylinder", vessel, CylinderInside{Vec3::Zero(), Vec3::UnitZ(), vessel_radius}, {}},
-      Wall{"blade", blade, make_mesh_wall(std::move(mesh)), motion},
+      Wall{"blade", blade, make_mesh_wall(std::move(surface.mesh)), motion},
   };
   // Centres stay inside the vessel; above the bed there is room to be thrown.
   setup.low = Vec3(-vessel_radius, -vessel_radius, 0);
