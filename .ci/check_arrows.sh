@@ -17,7 +17,9 @@ libdem/neighbors    libdem/case libdem/particles libdem/geometry
 libdem/contact      libdem/case libdem/particles libdem/geometry libdem/neighbors
 libdem/integrate    libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact
 libdem/simulation   libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate
-libdem/.            libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate libdem/simulation
+libdem/bed          libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate libdem/simulation
+libdem/rheometer    libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate libdem/simulation libdem/bed
+libdem/.            libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate libdem/simulation libdem/bed libdem/rheometer
 libjam/snapshot
 libjam/graph        libjam/snapshot
 libjam/metrics      libjam/snapshot libjam/graph
@@ -26,10 +28,11 @@ libjam/events       libjam/snapshot libjam/graph libjam/metrics libjam/jamming
 libjam/statistics   libjam/snapshot libjam/graph libjam/metrics libjam/jamming libjam/events
 libjam/.            libjam/snapshot libjam/graph libjam/metrics libjam/jamming libjam/events libjam/statistics
 apps                libdem libjam
-tests/dem           libdem
-tests/jam           libjam
-tests/app           libdem libjam apps
-tests/bench         libdem libjam apps
+tests/support
+tests/dem           libdem tests/support
+tests/jam           libjam tests/support
+tests/app           libdem libjam apps tests/support
+tests/bench         libdem libjam apps tests/support
 TABLE
 
 find libdem libjam apps tests -name node_modules -prune -o \( -name '*.hpp' -o -name '*.cpp' \) -print | sort |
