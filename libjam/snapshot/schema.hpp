@@ -152,18 +152,20 @@ inline constexpr Item table[] = {
     {"/series/walls/*/power", T::f8, 1, series, optional, "W", "mean power that the wall puts into the grains"},
 };
 
-// The row of the table with this path; does not compile where there is none.
-consteval const Item& item(std::string_view path) {
+constexpr const Item& find(std::string_view path) {
   for (const Item& i : table) {
     if (i.path == path) return i;
   }
   throw "no such item in the schema";
 }
 
+// The row of the table with this path; does not compile where there is none.
+consteval const Item& item(std::string_view path) { return find(path); }
+
 // The same, and does not compile where the table has another type or width than Value.
 template <class Value>
 consteval const Item& column(std::string_view path) {
-  const Item& i = item(path);
+  const Item& i = find(path);
   if (i.type != h5::Row<Value>::type || i.width != h5::Row<Value>::width) throw "type differs from the schema";
   return i;
 }
