@@ -12,8 +12,9 @@ namespace jam {
 
 // Between two appends the file is closed and consistent, so that other programs can read it. Which optional columns a
 // file has follows from the first frame in which its particles, contacts or series have rows; later frames must have
-// the same. All functions throw DataError: for data that fail validate(), and where the file cannot be written. After a
-// failed append the frames committed before are intact, and the append may be tried again.
+// the same. All functions throw DataError: for data that fail validate(), before anything is written; and where
+// the file cannot be written (a full disk), which leaves the frames committed before intact: make room and go on with
+// resume().
 class SnapshotWriter {
  public:
   // A new file without frames in place of whatever is there.

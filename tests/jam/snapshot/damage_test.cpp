@@ -16,6 +16,11 @@
 #include "libjam/snapshot/writer.hpp"
 #include "tests/jam/snapshot/sample_run.hpp"
 
+// HDF5 1.10 does not free everything when it gives up on a damaged file.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libhdf5";
+}  // NOLINT: the sanitizer's name
+
 namespace jam {
 namespace {
 
@@ -227,19 +232,27 @@ TEST_F(DamagedFile, AFullDiskIsAnErrorThatLeavesTheCommittedFramesIntact) {
   for (const std::uintmax_t room : {0, 1000, 5000, 20000}) {
     const pid_t child = in_child([&] {
       std::signal(SIGXFSZ, SIG_IGN);  // then a file at its limit is a failed write, as on a full disk
-      const rlimit limit{size + room, size + room};
+      rlimit limit{size + room, RLIM_INFINITY};
       setrlimit(RLIMIT_FSIZE, &limit);
       SnapshotWriter writer = SnapshotWriter::resume(path, UINT64_MAX);
       try {
         for (std::size_t k = writer.frames(); k < 40; ++k) writer.append(sample::frame(k), sample::series(k));
       } catch (const DataError& e) {
-        return std::string(e.what()).find(path.string()) == 0 ? 0 : 2;
+        if (std::string(e.what()).find(path.string()) != 0) return 2;
       }
-      return 3;
+      if (writer.frames() == 40) return 3;
+      // Room is made, and the same process goes on.
+      limit.rlim_cur = RLIM_INFINITY;
+      setrlimit(RLIMIT_FSIZE, &limit);
+      const std::size_t frames = writer.frames();
+      SnapshotWriter repaired = SnapshotWriter::resume(path, UINT64_MAX);
+      if (repaired.frames() != frames) return 4;
+      repaired.append(sample::frame(frames), sample::series(frames));
+      return check_all(open_jamscope_file(path)) == frames + 1 ? 0 : 5;
     });
     EXPECT_EQ(exit_code(child), 0) << room;
     const SnapshotSource source = open_jamscope_file(path);
-    EXPECT_GE(check_all(source), 3U);
+    EXPECT_GE(check_all(source), 4U);
     SnapshotWriter writer = SnapshotWriter::resume(path, 80000);
     EXPECT_EQ(writer.frames(), 3U);
     EXPECT_EQ(check_all(open_jamscope_file(path)), 3U);
