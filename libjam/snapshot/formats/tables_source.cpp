@@ -156,8 +156,12 @@ Series read_load_series(const std::string& path, const ImportMap& map) {
     const double time = values[0] * map.units.time;
     if (!series.time.empty() && !(time > series.time.back())) lines.fail("the time does not increase");
     series.time.push_back(time);
-    series.step.push_back(
-        map.dt > 0 && time >= 0 && time / map.dt < 9e15 ? static_cast<std::uint64_t>(std::llround(time / map.dt)) : 0);
+    // Steps must increase; where the time step is not known, or coarser than the table, they only count.
+    std::uint64_t step = series.step.empty() ? 0 : series.step.back() + 1;
+    if (map.dt > 0 && time > 0 && time / map.dt < 9e15) {
+      step = std::max(step, static_cast<std::uint64_t>(std::llround(time / map.dt)));
+    }
+    series.step.push_back(step);
     const Vec3 force = map.units.force * Vec3(values[1], values[2], values[3]);
     const Vec3 torque = map.units.torque * Vec3(values[4], values[5], values[6]);
     const WallState state = wall_state(*loaded, time);
