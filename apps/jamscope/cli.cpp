@@ -14,6 +14,7 @@
 #include "apps/jamscope/analyze.hpp"
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/check.hpp"
+#include "apps/jamscope/checkpoint.hpp"
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/inspect.hpp"
 #include "apps/jamscope/network_metrics.hpp"
@@ -80,7 +81,6 @@ Command add_check(CLI::App& app, Options& o) {
   };
 }
 
-#if __has_include("apps/jamscope/simulate.cpp")
 Command add_simulate(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("simulate", "simulate a case, analyse it in place and write the report");
   SimulateOptions& s = o.simulate;
@@ -94,7 +94,10 @@ Command add_simulate(CLI::App& app, Options& o) {
   c.add_flag("--resume", s.resume, "continue from the last checkpoint in DIR");
   c.add_option("--until", o.until, "stop at this simulated time, for example \"0.5 s\"")->type_name("TIME");
   add_overrides(c, s.overrides, "--set bed.depth=\"4 mm\"");
-  c.add_option("--bed-cache", s.bed_cache, "folder in which settled beds are kept for later runs")->type_name("DIR");
+  s.bed_cache = default_bed_cache();
+  c.add_option("--bed-cache", s.bed_cache, "folder in which settled beds are kept for later runs; \"\" keeps none")
+      ->type_name("DIR")
+      ->capture_default_str();
   c.add_flag("--overwrite", s.overwrite, "replace the results of an earlier run in DIR");
   add_log_options(c, s.quiet, s.log_format);
   c.footer("Example:\n  jamscope simulate data/cases/ft4_quick.toml -o quick --threads 2");
@@ -110,7 +113,6 @@ Command add_simulate(CLI::App& app, Options& o) {
     return simulate(o.simulate);
   };
 }
-#endif
 
 Command add_analyze(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("analyze", "find the jams in stored snapshots");
@@ -165,9 +167,7 @@ Command add_metrics(CLI::App& app, Options& o) {
 using AddCommand = Command (*)(CLI::App&, Options&);
 constexpr AddCommand commands[] = {
     add_check,
-#if __has_include("apps/jamscope/simulate.cpp")
     add_simulate,
-#endif
     add_analyze,  add_inspect, add_metrics,
 };
 

@@ -1,0 +1,237 @@
+// The whole road through the built program: case file, simulation, stored frames, analysis, results.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "libjam/snapshot/reader.hpp"
+#include "tests/app/program.hpp"
+
+namespace jamscope {
+namespace {
+
+using testing::HasSubstr;
+
+// A vessel of the size of a pea with about 130 beads: every part of the road in a second or two.
+constexpr const char* pea = R"(
+[case]
+name = "pea"
+[material.glass]
+density = "2500 kg/m3"
+young = "63 GPa"
+poisson = 0.2
+[material.steel]
+density = "7800 kg/m3"
+young = "210 GPa"
+poisson = 0.3
+[interaction.glass-glass]
+restitution = 0.9
+friction = 0.5
+rolling_friction = 0.01
+work_of_adhesion = "0.274 J/m2"
+[interaction.glass-steel]
+restitution = 0.9
+friction = 0.3
+rolling_friction = 0.01
+work_of_adhesion = "0.274 J/m2"
+[vessel]
+material = "glass"
+diameter = "8 mm"
+[blade]
+material = "steel"
+kind = "twisted"
+diameter = "6.5 mm"
+height = "2 mm"
+thickness = "0.8 mm"
+tip_twist = "30 deg"
+twist_exponent = 1.0
+shaft_diameter = "1.5 mm"
+tip_cut = "cylindrical"
+start_height = "0.9 mm"
+[motion]
+tip_speed = "250 mm/s"
+helix_angle = "-5 deg"
+rotation = "counter-clockwise"
+[bed]
+material = "glass"
+mean_diameter = "0.925 mm"
+size_low = 0.8
+size_high = 1.2
+depth = "3 mm"
+seed = 1
+[run]
+duration = "2 ms"
+step = "50 ns"
+[output]
+frame_interval = "0.1 ms"
+series_interval = "0.02 ms"
+checkpoint_interval = "0.5 ms"
+)";
+
+class SimulateProgram : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(folder_ / "pea.toml") << pea;
+    // The bed settles once for all tests of this process.
+    static Scratch beds;
+    cache_ = beds / "beds";
+  }
+  std::string command(const std::string& out, const std::string& more = "") const {
+    return "simulate " + (folder_ / "pea.toml") + " -o " + (folder_ / out) + " --bed-cache " + cache_ + " --threads 1 -q " + more;
+  }
+  Scratch folder_;
+  std::string cache_;
+};
+
+nlohmann::json summary(const std::string& folder) { return nlohmann::json::parse(text_of(folder + "/summary.json")); }
+
+// All frames and series rows of a run as one text of bytes.
+std::string numbers_of(const std::string& path) {
+  const jam::SnapshotSource source = jam::open_jamscope_file(path);
+  std::string bytes;
+  const auto add = [&bytes](const auto& rows) {
+    bytes.append(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(rows[0]));
+  };
+  for (std::size_t k = 0; k < source.frames; ++k) {
+    const jam::Snapshot s = source.read(k);
+    add(std::vector<double>{s.time});
+    add(s.particles.position);
+    add(s.particles.velocity);
+    add(s.particles.angular_velocity);
+    add(s.particles.compressive_force);
+    add(s.pp.row);
+    add(s.pp.normal_force);
+    add(s.pp.damping_force);
+    add(s.pp.tangential_force);
+    add(s.pp.overlap);
+    add(s.pp.birth_step);
+    add(s.pw.row);
+    add(s.pw.facet);
+    add(s.pw.normal_force);
+    add(s.pw.tangential_force);
+    for (const jam::WallState& w : s.walls) add(std::vector<jam::Vec3>{w.force, w.torque});
+  }
+  add(source.series.time);
+  add(source.series.kinetic_energy);
+  add(source.series.largest_overlap);
+  for (const auto& wall : source.series.walls) add(wall.force);
+  return bytes;
+}
+
+TEST_F(SimulateProgram, RunsFromCaseToReportTheSameForAnyThreadsAndAgainFromItsFile) {
+  const Outcome one = run_program(command("one"));
+  ASSERT_EQ(one.code, 0) << one.err;
+  for (const char* name : {"run.h5", "run.xdmf", "jam.h5", "events.csv", "summary.json", "report.html", "run.restart.h5"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / ("one/" + std::string(name)))) << name;
+  EXPECT_EQ(jam::open_jamscope_file(folder_ / "one/run.h5").frames, 21u);
+  EXPECT_EQ(jam::open_jamscope_file(folder_ / "one/run.h5").series.size(), 100u);
+
+  // Again, with the bed from its store, and with two threads.
+  ASSERT_EQ(run_program(command("two", "--threads 2")).code, 0);
+  EXPECT_EQ(numbers_of(folder_ / "one/run.h5"), numbers_of(folder_ / "two/run.h5"));
+
+  const Outcome again = run_program("analyze " + (folder_ / "one/run.h5") + " -o " + (folder_ / "again"));
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(text_of(folder_ / "one/events.csv"), text_of(folder_ / "again/events.csv"));
+  EXPECT_EQ(summary(folder_ / "one")["analysis"].dump(), summary(folder_ / "again")["analysis"].dump());
+}
+
+TEST_F(SimulateProgram, ResumesToTheSameNumbersAsAnUninterruptedRun) {
+  ASSERT_EQ(run_program(command("whole")).code, 0);
+  ASSERT_EQ(run_program(command("parts", "--until '0.73 ms'")).code, 0);
+  const Outcome rest = run_program(command("parts", "--resume"));
+  ASSERT_EQ(rest.code, 0) << rest.err;
+  // The part that ended between two frames recorded its last instant, which the whole run did not.
+  const auto whole = jam::open_jamscope_file(folder_ / "whole/run.h5"), parts = jam::open_jamscope_file(folder_ / "parts/run.h5");
+  ASSERT_EQ(parts.frames, whole.frames + 1);
+  const jam::Snapshot a = whole.read(whole.frames - 1), b = parts.read(parts.frames - 1);
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.particles.position, b.particles.position);
+  EXPECT_EQ(a.particles.velocity, b.particles.velocity);
+  EXPECT_EQ(a.pp.row, b.pp.row);
+  EXPECT_EQ(a.pp.tangential_force, b.pp.tangential_force);
+  EXPECT_EQ(a.walls[2].force, b.walls[2].force);
+}
+
+TEST_F(SimulateProgram, RefusesToResumeAnotherCaseAndToOverwrite) {
+  ASSERT_EQ(run_program(command("out", "--until '0.1 ms'")).code, 0);
+  const Outcome over = run_program(command("out"));
+  EXPECT_EQ(over.code, 2);
+  EXPECT_THAT(over.err, HasSubstr("--overwrite"));
+  const Outcome other = run_program(command("out", "--resume --set motion.tip_speed='100 mm/s'"));
+  EXPECT_EQ(other.code, 2);
+  EXPECT_THAT(other.err, HasSubstr("another case"));
+  EXPECT_EQ(run_program(command("nothing", "--resume")).code, 3);
+}
+
+// A signal makes it checkpoint, close its files and stop.
+TEST_F(SimulateProgram, KilledAtTwentyRandomMomentsItLeavesAFileThatCanBeReadAndResumed) {
+  ASSERT_EQ(run_program(command("whole")).code, 0);
+  const std::string expected = numbers_of(folder_ / "whole/run.h5");
+  std::mt19937 random(2026);
+  int readable = 0, resumed = 0;
+  for (int round = 0; round < 20; ++round) {
+    const std::string out = "killed" + std::to_string(round);
+    const pid_t child = fork();
+    if (child == 0) {
+      const int null = open("/dev/null", O_WRONLY);
+      dup2(null, 1);
+      dup2(null, 2);
+      execl("/bin/sh", "sh", "-c", ("exec " JAMSCOPE_PROGRAM " " + command(out)).c_str(), nullptr);
+      _exit(127);
+    }
+    // The first frame exists once the bed is there; from then on any moment will do.
+    const std::string file = folder_ / (out + "/run.h5");
+    for (int wait = 0; wait < 3000 && !std::filesystem::exists(folder_ / (out + "/run.restart.h5")); ++wait)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 600000));
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+
+    const Outcome inspect = run_program("inspect " + file);
+    EXPECT_EQ(inspect.code, 0) << inspect.err;
+    const Outcome analyze = run_program("analyze " + file + " -q -o " + (folder_ / (out + "-analysis")));
+    EXPECT_EQ(analyze.code, 0) << analyze.err;
+    readable += inspect.code == 0 && analyze.code == 0;
+    if (round % 4 == 0) {
+      const Outcome rest = run_program(command(out, "--resume"));
+      EXPECT_EQ(rest.code, 0) << rest.err;
+      EXPECT_EQ(numbers_of(file), expected) << "round " << round;
+      ++resumed;
+    }
+  }
+  EXPECT_EQ(readable, 20);
+  EXPECT_EQ(resumed, 5);
+}
+
+TEST_F(SimulateProgram, AnInterruptLeavesACheckpointToGoOnFrom) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const int null = open("/dev/null", O_WRONLY);
+    dup2(null, 1);
+    dup2(null, 2);
+    execl("/bin/sh", "sh", "-c", ("exec " JAMSCOPE_PROGRAM " " + command("out", "--set run.duration='1 s'")).c_str(), nullptr);
+    _exit(127);
+  }
+  for (int wait = 0; wait < 30000 && !std::filesystem::exists(folder_ / "out/run.restart.h5"); ++wait)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/report.html"));
+  EXPECT_EQ(jam::open_jamscope_file(folder_ / "out/run.h5").warnings.size(), 0u);
+}
+
+}  // namespace
+}  // namespace jamscope

@@ -1,0 +1,207 @@
+#include "libdem/simulation/simulation.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "libdem/errors.hpp"
+#include "libdem/particles/particles.hpp"
+#include "tests/support/grains.hpp"
+
+namespace dem {
+namespace {
+
+State fresh(Particles grains) {
+  State state;
+  state.particles = std::move(grains);
+  return state;
+}
+
+// Every byte of what moves and remembers.
+void expect_same_bytes(const State& a, const State& b) {
+  ASSERT_EQ(a.step, b.step);
+  ASSERT_EQ(a.particles.size(), b.particles.size());
+  const auto same = [](const std::vector<Vec3>& x, const std::vector<Vec3>& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(Vec3)) == 0;
+  };
+  EXPECT_TRUE(same(a.particles.position, b.particles.position));
+  EXPECT_TRUE(same(a.particles.velocity, b.particles.velocity));
+  EXPECT_TRUE(same(a.particles.angular_velocity, b.particles.angular_velocity));
+  EXPECT_TRUE(same(a.force, b.force));
+  EXPECT_TRUE(same(a.torque, b.torque));
+  ASSERT_EQ(a.pairs.size(), b.pairs.size());
+  for (std::size_t k = 0; k < a.pairs.size(); ++k) {
+    EXPECT_EQ(a.pairs[k].i, b.pairs[k].i);
+    EXPECT_EQ(a.pairs[k].j, b.pairs[k].j);
+    EXPECT_EQ(a.pairs[k].spring, b.pairs[k].spring);
+    EXPECT_EQ(a.pairs[k].birth_step, b.pairs[k].birth_step);
+  }
+  ASSERT_EQ(a.wall_pairs.size(), b.wall_pairs.size());
+  for (std::size_t k = 0; k < a.wall_pairs.size(); ++k) {
+    EXPECT_EQ(a.wall_pairs[k].spring, b.wall_pairs[k].spring);
+    EXPECT_EQ(a.wall_pairs[k].feature, b.wall_pairs[k].feature);
+  }
+}
+
+// A box of planes around a cloud that collapses onto a point: pairs and walls are busy.
+Setup boxed(double half) {
+  Setup setup = support::glass_setup(1e-7);
+  for (int axis = 0; axis < 3; ++axis)
+    for (double side : {-1.0, 1.0}) {
+      Vec3 normal = Vec3::Zero();
+      normal[axis] = -side;
+      setup.walls.push_back(Wall{"side", 0, Plane{-half * normal, normal}, {}});
+    }
+  setup.walls[0].motion.velocity = Vec3(0.2, 0, 0);  // one of them pushes
+  return setup;
+}
+
+TEST(Simulation, GivesTheSameBytesForAnyNumberOfThreads) {
+  const Particles grains = support::cloud(600, 11e-3, 1.0, 7);
+  std::vector<State> ends;
+  for (const int threads : {1, 2, 3}) {
+    omp_set_num_threads(threads);
+    Simulation sim(boxed(6.5e-3), fresh(grains));
+    sim.advance(5000);
+    EXPECT_GT(sim.contacts(), 50u);
+    ends.push_back(sim.state());
+  }
+  omp_set_num_threads(1);
+  expect_same_bytes(ends[0], ends[1]);
+  expect_same_bytes(ends[0], ends[2]);
+}
+
+TEST(Simulation, ContinuesFromAStateExactly) {
+  omp_set_num_threads(1);
+  const Particles grains = support::cloud(200, 8e-3, 1.0, 3);
+  Simulation whole(boxed(5e-3), fresh(grains)), first(boxed(5e-3), fresh(grains));
+  first.advance(1717);
+  Simulation second(boxed(5e-3), first.state());
+  second.advance(3283);
+  whole.advance(5000);
+  EXPECT_GT(whole.contacts(), 10u);
+  expect_same_bytes(whole.state(), second.state());
+}
+
+// Without walls and gravity momentum changes by rounding only, whatever the grains do to each other.
+TEST(Simulation, FreeGrainsKeepLinearAndAngularMomentum) {
+  omp_set_num_threads(1);
+  Setup setup = support::glass_setup(1e-7);
+  setup.gravity = Vec3::Zero();
+  Simulation sim(setup, fresh(support::cloud(150, 7e-3, 1.0, 11)));
+  const auto momentum = [&sim](double& scale) {
+    const View v = sim.view();
+    Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+    scale = 0;
+    for (std::size_t i = 0; i < v.id.size(); ++i) {
+      const double m = 2500 * sphere_volume(v.radius[i]);
+      linear += m * v.velocity[i];
+      angular += m * v.position[i].cross(v.velocity[i]) + sphere_inertia(m, v.radius[i]) * v.angular_velocity[i];
+      scale += m * v.velocity[i].norm();
+    }
+    return std::make_pair(linear, angular);
+  };
+  double scale = 0;
+  const auto before = momentum(scale);
+  const double energy = sim.kinetic_energy();
+  sim.advance(20000);
+  EXPECT_LT(sim.kinetic_energy(), 0.9 * energy);  // they did collide
+  double after_scale = 0;
+  const auto after = momentum(after_scale);
+  // 20,000 steps of about a hundred additions each, errors adding at random: 1e-16 sqrt(2e6) of the sum of sizes.
+  EXPECT_NEAR((after.first - before.first).norm(), 0, 1e-12 * scale);
+  EXPECT_NEAR((after.second - before.second).norm(), 0, 1e-12 * scale * 7e-3);
+}
+
+// Reference: v = (5/7) v0, any friction: the angular momentum about the line of contact is conserved.
+TEST(Simulation, ASlidingGrainEndsRollingAtFiveSeventhsOfItsSpeed) {
+  Setup setup = support::glass_setup(2e-8);
+  setup.interactions[0][0] = {0.5, 0.5, 0.0, 0.0};
+  setup.walls = {Wall{"floor", 0, Plane{}, {}}};
+  Particles grains;
+  const double radius = 0.4625e-3, v0 = 0.002;
+  grains.add(1, 0, radius, Vec3(0, 0, radius), Vec3(v0, 0, 0));
+  Simulation sim(setup, fresh(grains));
+  sim.advance(200000);  // 4 ms; sliding stops after (2/7) v0/(mu g) = 0.12 ms
+  EXPECT_NEAR(sim.view().velocity[0].x(), 5.0 / 7.0 * v0, 2e-3 * v0);  // the grain settles into its weight at first
+  EXPECT_NEAR(sim.view().angular_velocity[0].y() * radius, sim.view().velocity[0].x(), 1e-3 * v0);
+}
+
+// Reference: dv/dt = -(5/7) mu_r g for a grain that rolls without slip.
+TEST(Simulation, RollingFrictionSlowsARollingGrain) {
+  Setup setup = support::glass_setup(2e-8);
+  setup.interactions[0][0] = {0.5, 0.5, 0.05, 0.0};
+  setup.walls = {Wall{"floor", 0, Plane{}, {}}};
+  Particles grains;
+  const double radius = 0.4625e-3, v0 = 0.01;
+  grains.add(1, 0, radius, Vec3(0, 0, radius - 6.4e-10), Vec3(v0, 0, 0), Vec3(0, v0 / radius, 0));
+  Simulation sim(setup, fresh(grains));
+  sim.advance(50000);  // let it settle into its weight
+  const double begin = sim.view().velocity[0].x(), start = sim.time();
+  sim.advance(400000);
+  const double slowing = (begin - sim.view().velocity[0].x()) / (sim.time() - start);
+  EXPECT_NEAR(slowing, 5.0 / 7.0 * 0.05 * 9.81, 0.01 * slowing);
+}
+
+// Newton's third law and the power balance at a wall: what the wall puts in is what the grain has gained.
+TEST(Simulation, AMovingWallPutsInTheEnergyThatItsGrainGains) {
+  Setup setup = support::glass_setup(1e-8);
+  setup.gravity = Vec3::Zero();
+  setup.interactions[0][0] = {1.0, 0.0, 0.0, 0.0};
+  setup.walls = {Wall{"piston", 0, Plane{Vec3::Zero(), Vec3::UnitX()}, {Vec3::Zero(), Vec3(0.3, 0, 0), Vec3::Zero()}}};
+  Particles grains;
+  const double radius = 0.5e-3, mass = 2500 * sphere_volume(radius);
+  grains.add(1, 0, radius, Vec3(radius + 1e-6, 0, 0));
+  Simulation sim(setup, fresh(grains));
+  sim.take_window();
+  sim.advance(4000);
+  const Window window = sim.take_window();
+  EXPECT_EQ(sim.contacts(), 0u);
+  // Elastic: leaves with twice the wall's speed; the tolerance is the step's square over the contact time's.
+  EXPECT_NEAR(sim.particles().velocity[0].x(), 0.6, 1e-4);
+  const double steps = double(window.last_step - window.first_step);
+  EXPECT_NEAR(window.walls[0].power * steps * setup.step, 0.5 * mass * 0.6 * 0.6, 3e-4 * mass);
+  EXPECT_NEAR(window.walls[0].force.x() * steps * setup.step, -mass * 0.6, 3e-4 * mass);
+  EXPECT_LE(window.walls[0].force_min.x(), window.walls[0].force.x());
+}
+
+TEST(Simulation, CompressiveForceIsTheSumOfRepulsiveNormalForces) {
+  omp_set_num_threads(1);
+  Simulation sim(boxed(5e-3), fresh(support::cloud(200, 8e-3, 1.0, 5)));
+  sim.advance(3000);
+  const View v = sim.view();
+  std::vector<double> sum(v.id.size());
+  for (const PairRecord& c : v.pairs)
+    for (const std::uint32_t i : {c.i, c.j}) sum[i] += std::max(c.elastic + c.damping, 0.0);
+  for (const WallRecord& c : v.wall_pairs) sum[c.i] += std::max(c.elastic + c.damping, 0.0);
+  for (std::size_t i = 0; i < sum.size(); ++i) EXPECT_NEAR(v.compressive_force[i], sum[i], 1e-12 * sum[i]);
+}
+
+TEST(Simulation, ALostGrainStopsTheRunWithItsNameAndPlace) {
+  Setup setup = support::glass_setup();
+  setup.high = Vec3(1e-3, 1, 1);
+  Particles grains;
+  grains.add(42, 0, 0.5e-3, Vec3(0, 0, 0), Vec3(10, 0, 0));
+  Simulation sim(setup, fresh(grains));
+  try {
+    sim.advance(10000);
+    FAIL() << "nothing was thrown";
+  } catch (const PhysicsError& e) {
+    EXPECT_NE(std::string(e.what()).find("grain 42"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("left the vessel"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Simulation, ARunawayOverlapStopsTheRunWithItsCause) {
+  Setup setup = support::glass_setup(1e-5);  // twenty times what is stable
+  Particles grains;
+  grains.add(1, 0, 0.5e-3, Vec3(0, 0, 0), Vec3(50, 0, 0));
+  grains.add(2, 0, 0.5e-3, Vec3(1.1e-3, 0, 0), Vec3(-50, 0, 0));
+  Simulation sim(setup, fresh(grains));
+  EXPECT_THROW(sim.advance(100), PhysicsError);
+}
+
+}  // namespace
+}  // namespace dem
