@@ -45,25 +45,25 @@ void expect_same_bytes(const State& a, const State& b) {
   }
 }
 
-// A box of planes around a cloud that collapses onto a point: pairs and walls are busy.
-Setup boxed(double half) {
-  Setup setup = support::glass_setup(1e-7);
+// A closed box around the origin; one of its sides pushes.
+dem::Setup boxed(double half) {
+  dem::Setup setup = support::glass_setup(1e-7);
   for (int axis = 0; axis < 3; ++axis)
     for (double side : {-1.0, 1.0}) {
       Vec3 normal = Vec3::Zero();
       normal[axis] = -side;
       setup.walls.push_back(Wall{"side", 0, Plane{-half * normal, normal}, {}});
     }
-  setup.walls[0].motion.velocity = Vec3(0.2, 0, 0);  // one of them pushes
+  setup.walls[0].motion.velocity = Vec3(0.2, 0, 0);
   return setup;
 }
 
 TEST(Simulation, GivesTheSameBytesForAnyNumberOfThreads) {
-  const Particles grains = support::cloud(600, 11e-3, 1.0, 7);
+  const Particles grains = support::packed_cube(8, 1e-7, 0.1, 7);
   std::vector<State> ends;
   for (const int threads : {1, 2, 3}) {
     omp_set_num_threads(threads);
-    Simulation sim(boxed(6.5e-3), fresh(grains));
+    Simulation sim(boxed(3.75e-3), fresh(grains));
     sim.advance(5000);
     EXPECT_GT(sim.contacts(), 50u);
     ends.push_back(sim.state());
@@ -75,10 +75,10 @@ TEST(Simulation, GivesTheSameBytesForAnyNumberOfThreads) {
 
 TEST(Simulation, ContinuesFromAStateExactly) {
   omp_set_num_threads(1);
-  const Particles grains = support::cloud(200, 8e-3, 1.0, 3);
-  Simulation whole(boxed(5e-3), fresh(grains)), first(boxed(5e-3), fresh(grains));
+  const Particles grains = support::packed_cube(6, 1e-7, 0.1, 3);
+  Simulation whole(boxed(2.8e-3), fresh(grains)), first(boxed(2.8e-3), fresh(grains));
   first.advance(1717);
-  Simulation second(boxed(5e-3), first.state());
+  Simulation second(boxed(2.8e-3), first.state());
   second.advance(3283);
   whole.advance(5000);
   EXPECT_GT(whole.contacts(), 10u);
@@ -88,7 +88,7 @@ TEST(Simulation, ContinuesFromAStateExactly) {
 // Without walls and gravity momentum changes by rounding only, whatever the grains do to each other.
 TEST(Simulation, FreeGrainsKeepLinearAndAngularMomentum) {
   omp_set_num_threads(1);
-  Setup setup = support::glass_setup(1e-7);
+  dem::Setup setup = support::glass_setup(1e-7);
   setup.gravity = Vec3::Zero();
   Simulation sim(setup, fresh(support::cloud(150, 7e-3, 1.0, 11)));
   const auto momentum = [&sim](double& scale) {
@@ -117,7 +117,7 @@ TEST(Simulation, FreeGrainsKeepLinearAndAngularMomentum) {
 
 // Reference: v = (5/7) v0, any friction: the angular momentum about the line of contact is conserved.
 TEST(Simulation, ASlidingGrainEndsRollingAtFiveSeventhsOfItsSpeed) {
-  Setup setup = support::glass_setup(2e-8);
+  dem::Setup setup = support::glass_setup(2e-8);
   setup.interactions[0][0] = {0.5, 0.5, 0.0, 0.0};
   setup.walls = {Wall{"floor", 0, Plane{}, {}}};
   Particles grains;
@@ -131,7 +131,7 @@ TEST(Simulation, ASlidingGrainEndsRollingAtFiveSeventhsOfItsSpeed) {
 
 // Reference: dv/dt = -(5/7) mu_r g for a grain that rolls without slip.
 TEST(Simulation, RollingFrictionSlowsARollingGrain) {
-  Setup setup = support::glass_setup(2e-8);
+  dem::Setup setup = support::glass_setup(2e-8);
   setup.interactions[0][0] = {0.5, 0.5, 0.05, 0.0};
   setup.walls = {Wall{"floor", 0, Plane{}, {}}};
   Particles grains;
@@ -147,7 +147,7 @@ TEST(Simulation, RollingFrictionSlowsARollingGrain) {
 
 // Newton's third law and the power balance at a wall: what the wall puts in is what the grain has gained.
 TEST(Simulation, AMovingWallPutsInTheEnergyThatItsGrainGains) {
-  Setup setup = support::glass_setup(1e-8);
+  dem::Setup setup = support::glass_setup(1e-8);
   setup.gravity = Vec3::Zero();
   setup.interactions[0][0] = {1.0, 0.0, 0.0, 0.0};
   setup.walls = {Wall{"piston", 0, Plane{Vec3::Zero(), Vec3::UnitX()}, {Vec3::Zero(), Vec3(0.3, 0, 0), Vec3::Zero()}}};
@@ -169,7 +169,7 @@ TEST(Simulation, AMovingWallPutsInTheEnergyThatItsGrainGains) {
 
 TEST(Simulation, CompressiveForceIsTheSumOfRepulsiveNormalForces) {
   omp_set_num_threads(1);
-  Simulation sim(boxed(5e-3), fresh(support::cloud(200, 8e-3, 1.0, 5)));
+  Simulation sim(boxed(2.8e-3), fresh(support::packed_cube(6, 1e-7, 0.1, 5)));
   sim.advance(3000);
   const View v = sim.view();
   std::vector<double> sum(v.id.size());
@@ -180,7 +180,7 @@ TEST(Simulation, CompressiveForceIsTheSumOfRepulsiveNormalForces) {
 }
 
 TEST(Simulation, ALostGrainStopsTheRunWithItsNameAndPlace) {
-  Setup setup = support::glass_setup();
+  dem::Setup setup = support::glass_setup();
   setup.high = Vec3(1e-3, 1, 1);
   Particles grains;
   grains.add(42, 0, 0.5e-3, Vec3(0, 0, 0), Vec3(10, 0, 0));
@@ -195,7 +195,7 @@ TEST(Simulation, ALostGrainStopsTheRunWithItsNameAndPlace) {
 }
 
 TEST(Simulation, ARunawayOverlapStopsTheRunWithItsCause) {
-  Setup setup = support::glass_setup(1e-5);  // twenty times what is stable
+  dem::Setup setup = support::glass_setup(1e-5);  // twenty times what is stable
   Particles grains;
   grains.add(1, 0, 0.5e-3, Vec3(0, 0, 0), Vec3(50, 0, 0));
   grains.add(2, 0, 0.5e-3, Vec3(1.1e-3, 0, 0), Vec3(-50, 0, 0));
