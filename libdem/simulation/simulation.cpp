@@ -79,6 +79,7 @@ struct Simulation::Engine {
       evaluate(0.0);
       sum_and_move(false);
       sum_wall_loads();
+      begin_window();  // windows cover the steps after the start
     } else {
       force = std::move(state.force);
       torque = std::move(state.torque);

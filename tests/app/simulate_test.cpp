@@ -83,8 +83,9 @@ class SimulateProgram : public testing::Test {
     static Scratch beds;
     cache_ = beds / "beds";
   }
-  std::string command(const std::string& out, const std::string& more = "") const {
-    return "simulate " + (folder_ / "pea.toml") + " -o " + (folder_ / out) + " --bed-cache " + cache_ + " --threads 1 -q " + more;
+  std::string command(const std::string& out, const std::string& more = "", int threads = 1) const {
+    return "simulate " + (folder_ / "pea.toml") + " -o " + (folder_ / out) + " --bed-cache " + cache_ + " -q --threads " +
+           std::to_string(threads) + " " + more;
   }
   Scratch folder_;
   std::string cache_;
@@ -134,8 +135,8 @@ TEST_F(SimulateProgram, RunsFromCaseToReportTheSameForAnyThreadsAndAgainFromItsF
   EXPECT_EQ(jam::open_jamscope_file(folder_ / "one/run.h5").series.size(), 100u);
 
   // Again, with the bed from its store, and with two threads.
-  ASSERT_EQ(run_program(command("two", "--threads 2")).code, 0);
-  EXPECT_EQ(numbers_of(folder_ / "one/run.h5"), numbers_of(folder_ / "two/run.h5"));
+  ASSERT_EQ(run_program(command("two", "", 2)).code, 0);
+  EXPECT_TRUE(numbers_of(folder_ / "one/run.h5") == numbers_of(folder_ / "two/run.h5"));
 
   const Outcome again = run_program("analyze " + (folder_ / "one/run.h5") + " -o " + (folder_ / "again"));
   ASSERT_EQ(again.code, 0) << again.err;
@@ -204,7 +205,7 @@ TEST_F(SimulateProgram, KilledAtTwentyRandomMomentsItLeavesAFileThatCanBeReadAnd
     if (round % 4 == 0) {
       const Outcome rest = run_program(command(out, "--resume"));
       EXPECT_EQ(rest.code, 0) << rest.err;
-      EXPECT_EQ(numbers_of(file), expected) << "round " << round;
+      EXPECT_TRUE(numbers_of(file) == expected) << "round " << round;
       ++resumed;
     }
   }
@@ -218,7 +219,7 @@ TEST_F(SimulateProgram, AnInterruptLeavesACheckpointToGoOnFrom) {
     const int null = open("/dev/null", O_WRONLY);
     dup2(null, 1);
     dup2(null, 2);
-    execl("/bin/sh", "sh", "-c", ("exec " JAMSCOPE_PROGRAM " " + command("out", "--set run.duration='1 s'")).c_str(), nullptr);
+    execl("/bin/sh", "sh", "-c", ("exec " JAMSCOPE_PROGRAM " " + command("out", "--set run.duration='30 ms'")).c_str(), nullptr);
     _exit(127);
   }
   for (int wait = 0; wait < 30000 && !std::filesystem::exists(folder_ / "out/run.restart.h5"); ++wait)
