@@ -216,7 +216,8 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, d
   result.report.coordination = 2.0 * double(view.pairs.size()) / double(view.id.size());
   result.report.kinetic_energy = check.kinetic_energy();
   result.report.rest_scale = 1e-3 * double(view.id.size()) * grain_mass * gravity * d;
-  result.report.largest_overlap = check.take_window().largest_overlap;
+  for (const PairRecord& c : view.pairs)
+    result.report.largest_overlap = std::max(result.report.largest_overlap, c.overlap / std::min(view.radius[c.i], view.radius[c.j]));
   result.report.solid_fraction = solid_fraction(state.particles, vessel_radius, d, bed.depth - d);
   for (const Vec3& x : view.position) result.report.top = std::max(result.report.top, x.z());
   if (!(result.report.kinetic_energy < result.report.rest_scale)) {

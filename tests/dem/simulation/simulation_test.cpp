@@ -8,7 +8,7 @@
 
 #include "libdem/errors.hpp"
 #include "libdem/particles/particles.hpp"
-#include "tests/support/grains.hpp"
+#include "tests/dem/grains.hpp"
 
 namespace dem {
 namespace {
