@@ -15,11 +15,10 @@ libdem/particles    libdem/case
 libdem/geometry     libdem/case libdem/particles
 libdem/neighbors    libdem/case libdem/particles libdem/geometry
 libdem/contact      libdem/case libdem/particles libdem/geometry libdem/neighbors
-libdem/integrate    libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact
-libdem/simulation   libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate
-libdem/bed          libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate libdem/simulation
-libdem/rheometer    libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate libdem/simulation libdem/bed
-libdem/.            libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/integrate libdem/simulation libdem/bed libdem/rheometer
+libdem/simulation   libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact
+libdem/bed          libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation
+libdem/rheometer    libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation libdem/bed
+libdem/.            libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation libdem/bed libdem/rheometer
 libjam/snapshot
 libjam/graph        libjam/snapshot
 libjam/metrics      libjam/snapshot libjam/graph

@@ -72,8 +72,9 @@ Setup softened(const Setup& run, double modulus) {
 
 struct Stage {
   std::string name;
-  double step, drag, longest;  // s, 1/s, s
-  double rest;                 // J, the stage ends when the kinetic energy stays below
+  double step, drag;         // s, 1/s
+  double shortest, longest;  // s; grains that begin to fall look as if they were at rest, so a stage must last a while
+  double rest;               // J, the stage ends when the kinetic energy stays below
 };
 
 struct Recipe {
@@ -89,12 +90,13 @@ struct Recipe {
     state.torque.clear();
     Simulation sim(std::move(setup), std::move(state));
     const std::uint64_t total = std::uint64_t(std::ceil(stage.longest / stage.step));
+    const std::uint64_t least = std::uint64_t(stage.shortest / stage.step);
     const std::uint64_t block = std::max<std::uint64_t>(total / 200, 50);
     int calm = 0;
     while (sim.step() < total && calm < 3) {
       sim.advance(std::min(block, total - sim.step()));
       const double energy = sim.kinetic_energy();
-      calm = energy < stage.rest ? calm + 1 : 0;
+      calm = sim.step() >= least && energy < stage.rest ? calm + 1 : 0;
       if (progress) progress({stage.name, sim.time(), stage.longest, sim.particles().size(), energy});
       if (interrupted && interrupted()) throw BedInterrupted("interrupted while the bed was settling");
     }
@@ -162,8 +164,9 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, d
                         std::max(bed.size_high - bed.size_low, 1e-12);
   const double mean_volume = sphere_volume(0.5 * d) * (bed.size_high > bed.size_low ? moment : std::pow(bed.size_low, 3));
   const double bed_volume = std::numbers::pi * vessel_radius * vessel_radius * (bed.depth + 1.5 * d);
-  const std::size_t count = std::size_t(0.66 * bed_volume / mean_volume);
-  if (count == 0) throw CaseError("the bed is empty: a depth of " + std::to_string(bed.depth * 1e3) + " mm holds no grain");
+  const double wanted = 0.66 * bed_volume / mean_volume;
+  if (!(wanted >= 1)) throw CaseError("the bed is empty: a depth of " + std::to_string(bed.depth * 1e3) + " mm holds no grain");
+  const std::size_t count = std::size_t(wanted);
 
   const Recipe recipe{progress, interrupted};
   const double grain_mass = glass.density * mean_volume;
@@ -181,11 +184,11 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, d
   double top = 0;
   for (const Vec3& x : state.particles.position) top = std::max(top, x.z());
   const double fall = std::sqrt(2 * top / gravity);
-  state = recipe.run(softened(setup, soft), std::move(state), {"pouring", step_at(soft), 2 / fall, 6 * fall, rest});
+  state = recipe.run(softened(setup, soft), std::move(state), {"pouring", step_at(soft), 2 / fall, fall, 6 * fall, rest});
   state = cut(state, bed.depth);
   const double layers = bed.depth / d + 1;
   state = recipe.run(softened(setup, soft), std::move(state),
-                     {"cutting", step_at(soft), 2 / fall, 2 * fall, 0.1 * rest});
+                     {"cutting", step_at(soft), 2 / fall, 0.3 * fall, 2 * fall, 0.1 * rest});
 
   // Each time the modulus grows tenfold the old overlaps push the grains apart; they then sink by what the overlaps shrink.
   double overlap = d * std::pow(glass.density * gravity * bed.depth / soft, 2.0 / 3.0);
@@ -193,14 +196,17 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, d
     modulus = std::min(10 * modulus, glass.young);
     const double sink = 4 * std::sqrt(2 * overlap * layers / gravity);
     const double step = modulus < glass.young ? step_at(modulus) : std::min(step_at(modulus), setup.step);
+    // Grains that lose a support roll on to the next one, which takes them about 20 ms; while steps are cheap they get it.
+    const double shortest = std::max(0.5 * sink, std::min(20e-3, 20000 * step));
     state = recipe.run(softened(setup, modulus), std::move(state),
-                       {"stiffening to " + pressure(modulus), step, 4 / sink, sink, 0.01 * rest});
+                       {"stiffening to " + pressure(modulus), step, 4 / sink, shortest, std::max(sink, 1.5 * shortest), 0.01 * rest});
     overlap *= std::pow(10, -2.0 / 3.0);
   }
-  // At the true stiffness, adhesion and restitution.
+  // At the true stiffness, adhesion and restitution: long enough for a grain without support to fall by micrometres, much
+  // more than the overlaps that are left.
   Setup still = setup;
   for (Wall& w : still.walls) w.motion = {w.motion.start, Vec3::Zero(), Vec3::Zero()};
-  state = recipe.run(still, std::move(state), {"resting", setup.step, 2e3, 4e-4, 0.01 * rest});
+  state = recipe.run(still, std::move(state), {"resting", setup.step, 2e3, 1e-3, 2e-3, 0.01 * rest});
 
   SettledBed result;
   still.step = setup.step;

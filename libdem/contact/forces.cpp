@@ -11,7 +11,7 @@ namespace dem {
 namespace {
 
 // Below this many pairs waking other threads costs more than they save.
-constexpr std::size_t few_pairs = 500;
+constexpr std::size_t few_pairs = 1000;
 
 template <class Get>
 Pack gather(Get get) {

@@ -19,7 +19,7 @@ constexpr double runaway_overlap = 0.5;
 // Grains of one wall that are handled as one piece of work and summed in order.
 constexpr std::uint32_t chunk_size = 32;
 // Below this many grains waking other threads costs more than they save.
-constexpr std::size_t few_grains = 200;
+constexpr std::size_t few_grains = 500;
 
 std::string number(double value) {
   std::array<char, 32> text{};
