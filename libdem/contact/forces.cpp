@@ -76,7 +76,7 @@ void evaluate_pair_block(const ForceInput& in, PairContacts& pairs, const std::a
   const Pack touched = gather([&](std::size_t k) { return pairs.memory[slot[k]].touched ? 1.0 : 0.0; });
   const Mask<Pack> holds = Law::holds(touch.overlap, touched > Pack(0.5), c);
   Triple<Pack> spring = gather_triple([&](std::size_t k) -> const Vec3& { return pairs.memory[slot[k]].spring; });
-  const ContactForce<Pack> f = Law::evaluate(touch, c, spring, Pack(in.spring_dt));
+  const ContactForce<Pack> f = Law::evaluate(touch, c, spring, Pack(in.dt));
 
   const Triple<Pack> force = f.tangential - touch.normal * (f.elastic + f.damping);
   const Triple<Pack> twist = cross(touch.normal, f.tangential);
@@ -208,7 +208,7 @@ void evaluate_wall_block(const ForceInput& in, WallContacts& walls,
   const Pack touched = gather([&](std::size_t k) { return slot[k].contact->memory.touched ? 1.0 : 0.0; });
   const Mask<Pack> holds = Law::holds(touch.overlap, touched > Pack(0.5), c);
   Triple<Pack> spring = gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->memory.spring; });
-  const ContactForce<Pack> f = Law::evaluate(touch, c, spring, Pack(in.spring_dt));
+  const ContactForce<Pack> f = Law::evaluate(touch, c, spring, Pack(in.dt));
   const Triple<Pack> force = f.tangential - touch.normal * (f.elastic + f.damping);
   const Triple<Pack> torque = cross(arm, f.tangential) + f.rolling_torque;
 

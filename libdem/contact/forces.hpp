@@ -6,12 +6,10 @@ namespace dem {
 
 struct ForceInput {
   const Particles& particles;
-  const std::vector<double>& mass;  // [N] kg
   const MaterialTable& materials;
   const std::vector<Wall>& walls;
   const std::vector<WallPose>& poses;  // [walls]
-  double spring_dt;                    // s, by how much tangential springs advance
-  double dt;                           // s, of the step
+  double dt;                           // s, by how much tangential springs advance; 0 to look without stepping
   std::uint64_t step;
 };
 

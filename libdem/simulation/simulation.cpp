@@ -111,12 +111,8 @@ struct Simulation::Engine {
     for (std::size_t w = 0; w < poses.size(); ++w) poses[w] = pose_at(setup.walls[w].motion, time());
   }
 
-  ForceInput force_input(double spring_dt) const {
-    return {p, mass, materials, setup.walls, poses, spring_dt, setup.step, step};
-  }
-
-  void evaluate(double spring_dt) {
-    const double overlap = evaluate_contacts(setup.law, force_input(spring_dt), pairs, walls);
+  void evaluate(double dt) {
+    const double overlap = evaluate_contacts(setup.law, {p, materials, setup.walls, poses, dt, step}, pairs, walls);
     window.largest_overlap = std::max(window.largest_overlap, overlap);
   }
 
