@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <tuple>
+#include <type_traits>
 
 #include "apps/jamscope/sha256.hpp"
 #include "libjam/errors.hpp"
@@ -14,16 +16,91 @@ namespace {
 using Vec3 = dem::Vec3;
 constexpr const char* checkpoint_format = "jamscope-checkpoint";
 constexpr const char* bed_format = "jamscope-bed";
-constexpr std::uint32_t state_version = 1;
+constexpr std::uint32_t state_version = 2;
 
-// One column of a table of structs.
-template <class Row, class Get>
-auto column(const std::vector<Row>& rows, Get get) {
-  std::vector<std::decay_t<decltype(get(rows[0]))>> values;
-  values.reserve(rows.size());
-  for (const Row& row : rows) values.push_back(get(row));
-  return values;
+// TABLES of what a state file stores of each row of a struct: data set, member, unit, meaning. A new member is one row here.
+template <class Row, class Value>
+struct Column {
+  const char* name;
+  Value Row::*member;
+  const char *unit, *doc;
+};
+using Pair = dem::State::Pair;
+using WallPair = dem::State::WallPair;
+using Last = dem::LastForces;
+constexpr std::tuple pair_columns{
+    Column{"i", &Pair::i, "1", "row of the first grain"},
+    Column{"j", &Pair::j, "1", "row of the second grain"},
+    Column{"spring", &Pair::spring, "m", "tangential spring"},
+    Column{"birth_step", &Pair::birth_step, "1", "step of forming"},
+    Column{"contact_radius", &Pair::contact_radius, "m", "contact radius"},
+    Column{"rolling", &Pair::rolling, "N m", "elastic rolling torque on the first grain"},
+};
+constexpr std::tuple wall_pair_columns{
+    Column{"i", &WallPair::i, "1", "row of the grain"},
+    Column{"wall", &WallPair::wall, "1", "index of the wall"},
+    Column{"feature", &WallPair::feature, "1", "touched part of the wall"},
+    Column{"normal", &WallPair::normal, "1", "from the grain to the wall"},
+    Column{"spring", &WallPair::spring, "m", "tangential spring"},
+    Column{"birth_step", &WallPair::birth_step, "1", "step of forming"},
+    Column{"contact_radius", &WallPair::contact_radius, "m", "contact radius"},
+    Column{"rolling", &WallPair::rolling, "N m", "elastic rolling torque on the grain"},
+    Column{"distance", &WallPair::distance, "m", "from the grain's centre to the wall"},
+};
+// Of the evaluation before; the ledger needs them.
+constexpr std::tuple last_columns{
+    Column{"normal", &Last::normal, "1", "from i to j or to the wall"},
+    Column{"arm_i", &Last::arm_i, "m", "from i's centre to the contact"},
+    Column{"arm_j", &Last::arm_j, "m", "from j's centre to the contact"},
+    Column{"elastic", &Last::elastic, "N", "elastic normal force"},
+    Column{"damping", &Last::damping, "N", "normal damping force"},
+    Column{"tangential_elastic", &Last::tangential_elastic, "N", "elastic tangential force on i"},
+    Column{"tangential_viscous", &Last::tangential_viscous, "N", "viscous tangential force on i"},
+    Column{"rolling_i", &Last::rolling_i, "N m", "rolling torque on i"},
+    Column{"rolling_j", &Last::rolling_j, "N m", "rolling torque on j"},
+    Column{"wall_velocity", &Last::wall_velocity, "m/s", "of the wall's point"},
+    Column{"wall_spin", &Last::wall_spin, "rad/s", "of the wall"},
+    Column{"normal_energy", &Last::normal_energy, "J", "stored by the normal force"},
+    Column{"surface_energy", &Last::surface_energy, "J", "the part of closed surfaces"},
+    Column{"tangential_energy", &Last::tangential_energy, "J", "stored by the tangential spring"},
+    Column{"rolling_energy", &Last::rolling_energy, "J", "stored by the rolling spring"},
+};
+
+template <class Row, class Columns>
+void write_columns(jam::h5::File& f, const std::string& folder, const std::vector<Row>& rows, const Columns& columns) {
+  const auto write = [&](const auto& column) {
+    std::vector<std::decay_t<decltype(rows[0].*column.member)>> values;
+    values.reserve(rows.size());
+    for (const Row& row : rows) values.push_back(row.*column.member);
+    f.write(folder + column.name, values, column.unit, column.doc);
+  };
+  std::apply([&](const auto&... column) { (write(column), ...); }, columns);
 }
+
+template <class Row, class Columns>
+void read_columns(const jam::h5::File& f, const std::string& folder, std::vector<Row>& rows, const Columns& columns) {
+  bool first = true;
+  const auto read = [&](const auto& column) {
+    using Value = std::decay_t<decltype(std::declval<Row>().*column.member)>;
+    const std::vector<Value> values = f.read<Value>(folder + column.name);
+    if (first) rows.resize(values.size());
+    first = false;
+    if (values.size() != rows.size())
+      f.fail(folder + column.name, "has " + std::to_string(values.size()) + " rows, expected " + std::to_string(rows.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k) rows[k].*column.member = values[k];
+  };
+  std::apply([&](const auto&... column) { (read(column), ...); }, columns);
+}
+
+constexpr std::pair<const char*, double dem::LedgerSums::*> spent_columns[] = {
+    {"normal_damping", &dem::LedgerSums::normal_damping},
+    {"tangential_damping", &dem::LedgerSums::tangential_damping},
+    {"sliding", &dem::LedgerSums::sliding},
+    {"rolling", &dem::LedgerSums::rolling},
+    {"detachment", &dem::LedgerSums::detachment},
+    {"stiffness_change", &dem::LedgerSums::stiffness_change},
+    {"time_stepping", &dem::LedgerSums::time_stepping},
+};
 
 void write_state(jam::h5::File& f, const dem::State& s) {
   f.make_group("/state");
@@ -37,17 +114,17 @@ void write_state(jam::h5::File& f, const dem::State& s) {
   f.write("/state/particles/angular_velocity", p.angular_velocity, "rad/s", "angular velocity, likewise");
   f.write("/state/particles/force", s.force, "N", "sum of forces; empty before the first step");
   f.write("/state/particles/torque", s.torque, "N m", "sum of torques; empty before the first step");
-  f.write("/state/pairs/i", column(s.pairs, [](const auto& c) { return c.i; }), "1", "row of the first grain");
-  f.write("/state/pairs/j", column(s.pairs, [](const auto& c) { return c.j; }), "1", "row of the second grain");
-  f.write("/state/pairs/spring", column(s.pairs, [](const auto& c) { return c.spring; }), "m", "tangential spring");
-  f.write("/state/pairs/birth_step", column(s.pairs, [](const auto& c) { return c.birth_step; }), "1", "step of forming");
-  const auto& w = s.wall_pairs;
-  f.write("/state/walls/i", column(w, [](const auto& c) { return c.i; }), "1", "row of the grain");
-  f.write("/state/walls/wall", column(w, [](const auto& c) { return c.wall; }), "1", "index of the wall");
-  f.write("/state/walls/feature", column(w, [](const auto& c) { return c.feature; }), "1", "touched part of the wall");
-  f.write("/state/walls/normal", column(w, [](const auto& c) { return c.normal; }), "1", "from the grain to the wall");
-  f.write("/state/walls/spring", column(w, [](const auto& c) { return c.spring; }), "m", "tangential spring");
-  f.write("/state/walls/birth_step", column(w, [](const auto& c) { return c.birth_step; }), "1", "step of forming");
+  write_columns(f, "/state/pairs/", s.pairs, pair_columns);
+  write_columns(f, "/state/walls/", s.wall_pairs, wall_pair_columns);
+  const dem::State::Ledger& l = s.ledger;
+  if (l.last_power.empty()) return;
+  f.make_group("/state/ledger");
+  for (const auto& [name, member] : spent_columns) f.set_attribute("/state/ledger", name, l.spent.*member);
+  f.set_attribute("/state/ledger", "initial", l.initial);
+  f.write("/state/ledger/wall_work", l.wall_work, "J", "work of each wall since the beginning");
+  f.write("/state/ledger/last_power", l.last_power, "W", "power of each wall in the last step");
+  write_columns(f, "/state/ledger/pairs/", l.pairs, last_columns);
+  write_columns(f, "/state/ledger/walls/", l.wall_pairs, last_columns);
 }
 
 dem::State read_state(const jam::h5::File& f) {
@@ -66,21 +143,16 @@ dem::State read_state(const jam::h5::File& f) {
   for (const std::size_t size : {p.material.size(), p.radius.size(), p.position.size(), p.velocity.size(),
                                  p.angular_velocity.size(), s.force.empty() ? n : s.force.size(), s.torque.empty() ? n : s.torque.size()})
     if (size != n) f.fail("/state/particles", "columns of different length, expected " + std::to_string(n) + " rows");
-  const auto i = f.read<std::uint32_t>("/state/pairs/i"), j = f.read<std::uint32_t>("/state/pairs/j");
-  const auto spring = f.read<Vec3>("/state/pairs/spring");
-  const auto birth = f.read<std::uint64_t>("/state/pairs/birth_step");
-  if (j.size() != i.size() || spring.size() != i.size() || birth.size() != i.size())
-    f.fail("/state/pairs", "columns of different length");
-  for (std::size_t k = 0; k < i.size(); ++k) s.pairs.push_back({i[k], j[k], spring[k], birth[k]});
-  const auto row = f.read<std::uint32_t>("/state/walls/i"), wall = f.read<std::uint32_t>("/state/walls/wall");
-  const auto feature = f.read<std::uint64_t>("/state/walls/feature");
-  const auto normal = f.read<Vec3>("/state/walls/normal"), wall_spring = f.read<Vec3>("/state/walls/spring");
-  const auto wall_birth = f.read<std::uint64_t>("/state/walls/birth_step");
-  const std::size_t m = row.size();
-  if (wall.size() != m || feature.size() != m || normal.size() != m || wall_spring.size() != m || wall_birth.size() != m)
-    f.fail("/state/walls", "columns of different length");
-  for (std::size_t k = 0; k < m; ++k)
-    s.wall_pairs.push_back({row[k], wall[k], feature[k], normal[k], wall_spring[k], wall_birth[k]});
+  read_columns(f, "/state/pairs/", s.pairs, pair_columns);
+  read_columns(f, "/state/walls/", s.wall_pairs, wall_pair_columns);
+  if (!f.exists("/state/ledger")) return s;
+  dem::State::Ledger& l = s.ledger;
+  for (const auto& [name, member] : spent_columns) l.spent.*member = f.attribute<double>("/state/ledger", name);
+  l.initial = f.attribute<double>("/state/ledger", "initial");
+  l.wall_work = f.read<double>("/state/ledger/wall_work");
+  l.last_power = f.read<double>("/state/ledger/last_power");
+  read_columns(f, "/state/ledger/pairs/", l.pairs, last_columns);
+  read_columns(f, "/state/ledger/walls/", l.wall_pairs, last_columns);
   return s;
 }
 
@@ -179,7 +251,7 @@ std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, double vessel_
     for (const double x : {m.density, m.young, m.poisson}) number(x);
   for (const auto& row : setup.interactions)
     for (const dem::Interaction& i : row)
-      for (const double x : {i.restitution, i.friction, i.rolling_friction, i.work_of_adhesion}) number(x);
+      for (const double x : {i.restitution, i.friction, i.rolling_friction, i.work_of_adhesion, i.rolling_damping}) number(x);
   for (const dem::Wall& w : setup.walls) {
     number(double(w.material));
     vector(w.motion.start);
@@ -191,7 +263,9 @@ std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, double vessel_
   }
   vector(setup.gravity);
   for (const double x : {setup.step, vessel_radius, bed.mean_diameter, bed.size_low, bed.size_high, bed.depth}) number(x);
-  bytes += bed.material + ";" + std::to_string(bed.seed) + ";law " + std::to_string(setup.law);
+  bytes += bed.material + ";" + std::to_string(bed.seed) + ";law";
+  const dem::LawChoice& law = setup.law;
+  for (const std::uint8_t row : {law.normal, law.damping, law.friction, law.tangential, law.rolling}) number(row);
   return sha256_hex(bytes);
 }
 

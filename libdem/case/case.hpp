@@ -23,6 +23,19 @@ struct Interaction {
   double friction = 0;          // 1, Coulomb
   double rolling_friction = 0;  // 1
   double work_of_adhesion = 0;  // J/m^2, W of the pair (twice a surface energy)
+  double rolling_damping = 0.3;  // 1, share of critical damping; for elastic_plastic rolling only (Ai et al. 2011 use 0.3)
+};
+
+// The parts of the contact law by their names in the tables of libdem/contact/laws.hpp.
+struct ContactModel {
+  std::string normal = "jkr";
+  std::string damping = "contact_radius";
+  std::string friction_limit = "edem";
+  std::string tangential = "total";
+  std::string rolling = "constant_torque";
+  // Walls' curvature enters the effective radius; without it walls are flat where they are touched, as in codes whose
+  // walls are meshes.
+  bool wall_curvature = false;
 };
 
 // A bed of spheres, diameters uniform by number in [size_low, size_high] * mean_diameter, poured, settled, relaxed at
@@ -83,6 +96,7 @@ struct Case {
   std::string name, description;
   std::vector<Material> materials;
   std::vector<std::vector<Interaction>> interactions;  // [M][M], symmetric, order of `materials`
+  ContactModel contact;
   Bed bed;
   Vessel vessel;
   Blade blade;

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "libdem/contact/ledger.hpp"
 #include "libdem/contact/pair_constants.hpp"
+#include "libdem/contact/wall_load.hpp"
 #include "libdem/geometry/walls.hpp"
 #include "libdem/neighbors/pair_list.hpp"
 #include "libdem/particles/particles.hpp"
@@ -14,6 +16,7 @@ namespace dem {
 // What both kinds of contact remember between steps.
 struct ContactMemory {
   Vec3 spring = Vec3::Zero();  // m, tangential
+  double contact_radius = 0;   // m, of the last evaluation
   std::uint64_t birth_step = 0;
   bool touched = false;
 };
@@ -28,6 +31,8 @@ struct PairForce {
 struct PairContacts {
   PairList list;
   std::vector<ContactMemory> memory;  // [P]
+  std::vector<Vec3> rolling;          // [P] N m, elastic rolling torque on i; empty where the law has none
+  std::vector<LastForces> last;       // [P] empty where no ledger is kept
   std::vector<PairForce> result;      // [P] of the pairs that act
   std::vector<std::uint8_t> acts;     // [P] 1 for a formed contact
   struct Bodies {
@@ -35,14 +40,23 @@ struct PairContacts {
   };
   std::vector<Bodies> bodies;               // [P]
   std::vector<std::uint32_t> material_pair;  // [P] index into MaterialTable::pair
+  double reach_beyond_touch = 0;             // m, gap across which contacts of the law may form
+  // Pairs are handled in fixed chunks, whose sums are added in order: they do not depend on the number of threads.
+  static constexpr std::size_t chunk_size = 1024;
+  struct Chunk {
+    double largest_overlap = 0;  // over the smaller radius
+    LedgerSums ledger;
+  };
+  std::vector<Chunk> chunk;
 };
 
 struct WallContact {
   ContactMemory memory;
+  Vec3 rolling = Vec3::Zero();  // N m, elastic rolling torque on the particle
+  LastForces last;
   WallTouch touch{};
   Vec3 force, torque;       // N, N m on the particle
   Vec3 tangential;          // N on the particle
-  Vec3 rolling_torque;      // N m on the particle
   double elastic, damping;  // N
   bool acts = false, sliding = false;
 };
@@ -57,10 +71,6 @@ struct WallCandidate {
   std::array<WallContact, capacity> contact;  // the first `size`, sorted by feature
 };
 
-struct WallLoad {
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // N, N m on the wall, torque about the pose position
-};
-
 struct WallContacts {
   std::vector<WallCandidate> candidate;  // sorted by wall, then particle
   std::vector<std::uint8_t> acts;        // per candidate: number of formed contacts
@@ -71,7 +81,9 @@ struct WallContacts {
   struct Chunk {
     std::uint32_t wall, begin, end;
     WallLoad load;
+    std::array<WallLoad, facet_labels> load_of_label;  // the part of `load` on the triangles of each label; meshes only
     double largest_overlap = 0;
+    LedgerSums ledger;
     bool overflow = false;
     std::vector<WallTouch> touches;  // working space
     std::vector<MeshTouch> scratch;

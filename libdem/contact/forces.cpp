@@ -4,7 +4,6 @@
 
 #include <array>
 
-#include "libdem/contact/laws.hpp"
 #include "libdem/errors.hpp"
 
 namespace dem {
@@ -12,6 +11,8 @@ namespace {
 
 // Below this many pairs waking other threads costs more than they save.
 constexpr std::size_t few_pairs = 1000;
+
+using Lanes = std::array<std::uint32_t, pack_width>;
 
 template <class Get>
 Pack gather(Get get) {
@@ -23,24 +24,136 @@ Triple<Pack> gather_triple(Get get) {
           gather([&](std::size_t k) { return get(k).z(); })};
 }
 inline Vec3 lane_of(const Triple<Pack>& t, std::size_t k) { return {t.x[k], t.y[k], t.z[k]}; }
+inline Triple<Pack> all_lanes(const Vec3& v) { return {Pack(v.x()), Pack(v.y()), Pack(v.z())}; }
+inline Triple<Pack> nothing() { return {Pack(0.0), Pack(0.0), Pack(0.0)}; }
+inline Pack only(const Mask<Pack>& mask, const Pack& a) { return select(mask, a, Pack(0.0)); }
+inline Triple<Pack> only(const Mask<Pack>& mask, const Triple<Pack>& a) { return select(mask, a, nothing()); }
 
-// Constants that depend on the materials alone, for the contacts of one block.
+// Constants that depend on the materials alone, for the contacts of one block; most blocks are of one pair of materials.
 template <class Get>
-PairConstants<Pack> gather_materials(Get get) {
+PairConstants<Pack> gather_materials(bool one_pair, Get get) {
+  const auto each = [&](auto member) {
+    return one_pair ? Pack(get(0).*member) : gather([&](std::size_t k) { return get(k).*member; });
+  };
+  using C = PairConstants<double>;
   PairConstants<Pack> c;
-  c.effective_modulus = gather([&](std::size_t k) { return get(k).effective_modulus; });
-  c.effective_shear = gather([&](std::size_t k) { return get(k).effective_shear; });
-  c.damping_ratio = gather([&](std::size_t k) { return get(k).damping_ratio; });
-  c.friction = gather([&](std::size_t k) { return get(k).friction; });
-  c.rolling_friction = gather([&](std::size_t k) { return get(k).rolling_friction; });
-  c.work_of_adhesion = gather([&](std::size_t k) { return get(k).work_of_adhesion; });
+  c.effective_modulus = each(&C::effective_modulus);
+  c.effective_shear = each(&C::effective_shear);
+  c.damping_ratio = each(&C::damping_ratio);
+  c.friction = each(&C::friction);
+  c.rolling_friction = each(&C::rolling_friction);
+  c.rolling_damping = each(&C::rolling_damping);
+  c.work_of_adhesion = each(&C::work_of_adhesion);
   return c;
 }
 
+// Sums of LedgerSums, lane by lane.
+struct PackedSums {
+  Pack normal_damping = 0.0, tangential_damping = 0.0, sliding = 0.0, rolling = 0.0, detachment = 0.0, stiffness_change = 0.0,
+       time_stepping = 0.0;
+  // Packs of lanes that hold nothing add nothing.
+  LedgerSums sum() const {
+    using std::experimental::reduce;
+    return {reduce(normal_damping),   reduce(tangential_damping), reduce(sliding),      reduce(rolling), reduce(detachment),
+            reduce(stiffness_change), reduce(time_stepping)};
+  }
+};
+
+// One block's parts of (1) in ledger.hpp. `get(k)` gives lane k's LastForces; lanes that are not `used` book nothing and keep
+// theirs. `v` are the velocities of i less those of j at the centres (of a wall: zero, its contact point's comes on top),
+// `point_velocity` and `spin_j` those of a wall now.
+template <class Law, class Get>
+void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c, const ContactForce<Pack>& f,
+          const Mask<Pack>& holds, const Mask<Pack>& touched, const Mask<Pack>& used, const Triple<Pack>& v, bool wall,
+          const Triple<Pack>& wall_velocity, double dt, std::size_t count, Get get, PackedSums& sums) {
+  // The step before, with the velocities of now.
+  const Triple<Pack> normal = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).normal; });
+  const Pack arm_i = gather([&](std::size_t k) { return get(k).arm_i; });
+  const Pack arm_j = gather([&](std::size_t k) { return get(k).arm_j; });
+  const Pack elastic = gather([&](std::size_t k) { return get(k).elastic; });
+  const Pack damping = gather([&](std::size_t k) { return get(k).damping; });
+  const Triple<Pack> spring = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).tangential_elastic; });
+  const Triple<Pack> viscous = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).tangential_viscous; });
+  const Triple<Pack> rolling_i = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).rolling_i; });
+  const Triple<Pack> rolling_j = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).rolling_j; });
+  const Pack normal_energy = gather([&](std::size_t k) { return get(k).normal_energy; });
+  const Pack tangential_energy = gather([&](std::size_t k) { return get(k).tangential_energy; });
+  const Pack rolling_energy = gather([&](std::size_t k) { return get(k).rolling_energy; });
+  Triple<Pack> u = v + cross(touch.spin_i * arm_i + (wall ? nothing() : touch.spin_j * arm_j), normal);
+  Triple<Pack> spin_j_before = touch.spin_j;
+  if (wall) {
+    u = u - gather_triple([&](std::size_t k) -> const Vec3& { return get(k).wall_velocity; });
+    spin_j_before = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).wall_spin; });
+  }
+  const Pack u_n = dot(u, normal), v_n = dot(touch.velocity, touch.normal), half = 0.5 * dt;
+
+  // This step; nothing where the contact has ended.
+  const Pack elastic_now = only(holds, f.normal.elastic), damping_now = only(holds, f.damping);
+  const Triple<Pack> spring_now = only(holds, f.tangential.elastic), viscous_now = only(holds, f.tangential.viscous);
+  const Triple<Pack> rolling_i_now = only(holds, f.rolling.on_i), rolling_j_now = only(holds, f.rolling.on_j);
+  const Pack normal_now = only(holds, f.normal.energy), tangential_now = only(holds, f.tangential.energy),
+             rolling_now = only(holds, f.rolling.energy);
+
+  const Pack taken_normal = half * (elastic * u_n + elastic_now * v_n);
+  const Pack taken_damping = half * (damping * u_n + damping_now * v_n);
+  const Pack taken_spring = -half * (dot(spring, u) + dot(spring_now, touch.velocity));
+  const Pack taken_viscous = -half * (dot(viscous, u) + dot(viscous_now, touch.velocity));
+  const Pack taken_rolling = -half * (dot(rolling_i, touch.spin_i) + dot(rolling_j, spin_j_before) +
+                                      dot(rolling_i_now, touch.spin_i) + dot(rolling_j_now, touch.spin_j));
+
+  const auto [form, broken] = with_part<NormalLaws>(
+      law.normal, [&](auto part) { return std::pair<Pack, Pack>(part.form_energy(c), part.break_energy(c)); });
+  const Mask<Pack> formed = holds && !touched, ended = touched && !holds;
+  const Pack springs_lost = only(ended, tangential_energy + rolling_energy);
+  const Pack detachment = only(ended, broken) - only(formed, form) + springs_lost;
+  const Pack stiffness = only(holds, f.tangential.stiffness_work), slip = only(holds, f.tangential.slip_work);
+  const Pack rolled = taken_rolling - (rolling_now - rolling_energy) - only(ended, rolling_energy);
+  const Pack stored = normal_now - normal_energy + tangential_now - tangential_energy + rolling_now - rolling_energy;
+  const Pack time_stepping = taken_normal + taken_damping + taken_spring + taken_viscous + taken_rolling -
+                             (stored + taken_damping + taken_viscous + slip + rolled + detachment - stiffness);
+  sums.normal_damping += only(used, taken_damping);
+  sums.tangential_damping += only(used, taken_viscous);
+  sums.sliding += only(used, slip);
+  sums.rolling += only(used, rolled);
+  sums.detachment += only(used, detachment);
+  sums.stiffness_change += only(used, stiffness);
+  sums.time_stepping += only(used, time_stepping);
+
+  const Pack surface_now = f.normal.surface_energy;
+  for (std::size_t k = 0; k < count; ++k) {
+    LastForces& last = get(k);
+    if (!holds[k]) {
+      last = LastForces{};
+      continue;
+    }
+    last.normal = lane_of(touch.normal, k);
+    last.arm_i = touch.arm_i[k];
+    last.arm_j = touch.arm_j[k];
+    last.elastic = elastic_now[k];
+    last.damping = damping_now[k];
+    last.tangential_elastic = lane_of(spring_now, k);
+    last.tangential_viscous = lane_of(viscous_now, k);
+    last.rolling_i = lane_of(rolling_i_now, k);
+    last.rolling_j = lane_of(rolling_j_now, k);
+    if (wall) {
+      last.wall_velocity = lane_of(wall_velocity, k);
+      last.wall_spin = lane_of(touch.spin_j, k);
+    }
+    last.normal_energy = normal_now[k];
+    last.surface_energy = surface_now[k];
+    last.tangential_energy = tangential_now[k];
+    last.rolling_energy = rolling_now[k];
+  }
+}
+
+inline Mask<Pack> first_lanes(std::size_t count) {
+  return Pack([](auto lane) { return double(lane); }) < Pack(double(count));
+}
+
 // One block of pairs: gather, law, scatter. Lanes from `count` on repeat lane 0 and are not written back.
-template <class Law>
-void evaluate_pair_block(const ForceInput& in, PairContacts& pairs, const std::array<std::uint32_t, pack_width>& slot,
-                         std::size_t count, double& largest_overlap) {
+template <class Law, bool Keep>
+void evaluate_pair_block(const Law& law, const ForceInput& in, PairContacts& pairs, const Lanes& slot, std::size_t count,
+                         double& largest_overlap, PackedSums& sums) {
   const Particles& p = in.particles;
   const auto i = [&](std::size_t k) { return pairs.list.first[slot[k]]; };
   const auto j = [&](std::size_t k) { return pairs.list.second[slot[k]]; };
@@ -52,67 +165,82 @@ void evaluate_pair_block(const ForceInput& in, PairContacts& pairs, const std::a
   const Pack distance = square_root(dot(branch, branch));
   const Pack inverse = 1.0 / distance;
 
-  PairConstants<Pack> c =
-      gather_materials([&](std::size_t k) -> const auto& { return in.materials.pair[pairs.material_pair[slot[k]]]; });
+  bool one_pair = true;
+  for (std::size_t k = 1; k < pack_width; ++k) one_pair &= pairs.material_pair[slot[k]] == pairs.material_pair[slot[0]];
+  PairConstants<Pack> c = gather_materials(
+      one_pair, [&](std::size_t k) -> const auto& { return in.materials.pair[pairs.material_pair[slot[k]]]; });
   c.effective_radius = gather([&](std::size_t k) { return pairs.bodies[slot[k]].effective_radius; });
   c.effective_mass = gather([&](std::size_t k) { return pairs.bodies[slot[k]].effective_mass; });
   c.effective_inertia = gather([&](std::size_t k) { return pairs.bodies[slot[k]].effective_inertia; });
   c.adhesion_length = gather([&](std::size_t k) { return pairs.bodies[slot[k]].adhesion_length; });
 
-  const Triple<Pack> spin_i = gather_triple([&](std::size_t k) -> const Vec3& { return p.angular_velocity[i(k)]; });
-  const Triple<Pack> spin_j = gather_triple([&](std::size_t k) -> const Vec3& { return p.angular_velocity[j(k)]; });
+  Touch<Pack> touch;
+  touch.spin_i = gather_triple([&](std::size_t k) -> const Vec3& { return p.angular_velocity[i(k)]; });
+  touch.spin_j = gather_triple([&](std::size_t k) -> const Vec3& { return p.angular_velocity[j(k)]; });
   // The contact point divides the branch in the ratio of the radii.
   const Pack share = distance / (radius_i + radius_j);
-  const Pack arm_i = radius_i * share, arm_j = radius_j * share;
-
-  Touch<Pack> touch;
+  touch.arm_i = radius_i * share;
+  touch.arm_j = radius_j * share;
   touch.overlap = radius_i + radius_j - distance;
   touch.normal = branch * inverse;
-  touch.velocity = gather_triple([&](std::size_t k) -> const Vec3& { return p.velocity[i(k)]; }) -
-                   gather_triple([&](std::size_t k) -> const Vec3& { return p.velocity[j(k)]; }) +
-                   cross(spin_i * arm_i + spin_j * arm_j, touch.normal);
-  touch.spin = spin_i - spin_j;
+  const Triple<Pack> centres = gather_triple([&](std::size_t k) -> const Vec3& { return p.velocity[i(k)]; }) -
+                               gather_triple([&](std::size_t k) -> const Vec3& { return p.velocity[j(k)]; });
+  touch.velocity = centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
 
-  const Pack touched = gather([&](std::size_t k) { return pairs.memory[slot[k]].touched ? 1.0 : 0.0; });
-  const Mask<Pack> holds = Law::holds(touch.overlap, touched > Pack(0.5), c);
-  Triple<Pack> spring = gather_triple([&](std::size_t k) -> const Vec3& { return pairs.memory[slot[k]].spring; });
-  const ContactForce<Pack> f = Law::evaluate(touch, c, spring, Pack(in.dt));
+  const Mask<Pack> touched = gather([&](std::size_t k) { return pairs.memory[slot[k]].touched ? 1.0 : 0.0; }) > Pack(0.5);
+  const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
+  const bool rolling_spring = !pairs.rolling.empty();
+  Springs<Pack> springs{
+      gather_triple([&](std::size_t k) -> const Vec3& { return pairs.memory[slot[k]].spring; }),
+      rolling_spring ? gather_triple([&](std::size_t k) -> const Vec3& { return pairs.rolling[slot[k]]; }) : nothing(),
+      gather([&](std::size_t k) { return pairs.memory[slot[k]].contact_radius; })};
+  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Pack(in.dt));
 
-  const Triple<Pack> force = f.tangential - touch.normal * (f.elastic + f.damping);
-  const Triple<Pack> twist = cross(touch.normal, f.tangential);
-  const Triple<Pack> torque_i = twist * arm_i + f.rolling_torque;
-  const Triple<Pack> torque_j = twist * arm_j - f.rolling_torque;
+  const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
+  const Triple<Pack> force = tangential - touch.normal * (f.normal.elastic + f.damping);
+  const Triple<Pack> twist = cross(touch.normal, tangential);
+  const Triple<Pack> torque_i = twist * touch.arm_i + f.rolling.on_i;
+  const Triple<Pack> torque_j = twist * touch.arm_j + f.rolling.on_j;
   const Pack relative_overlap = touch.overlap / smaller(radius_i, radius_j);
+  if constexpr (Keep)
+    book(law, touch, c, f, hold, touched, first_lanes(count), centres, false, nothing(), in.dt, count,
+         [&](std::size_t k) -> LastForces& { return pairs.last[slot[k]]; }, sums);
   for (std::size_t k = 0; k < count; ++k) {
     ContactMemory& memory = pairs.memory[slot[k]];
     PairForce& result = pairs.result[slot[k]];
-    pairs.acts[slot[k]] = holds[k];
-    if (holds[k]) {
+    pairs.acts[slot[k]] = hold[k];
+    if (hold[k]) {
       if (!memory.touched) memory.birth_step = in.step;
       memory.touched = true;
-      memory.spring = lane_of(spring, k);
+      memory.spring = lane_of(springs.tangential, k);
+      memory.contact_radius = springs.contact_radius[k];
+      if (rolling_spring) pairs.rolling[slot[k]] = lane_of(springs.rolling, k);
       result.force = lane_of(force, k);
       result.torque_i = lane_of(torque_i, k);
       result.torque_j = lane_of(torque_j, k);
-      result.elastic = f.elastic[k];
+      result.elastic = f.normal.elastic[k];
       result.damping = f.damping[k];
-      result.sliding = f.sliding[k];
+      result.sliding = f.tangential.sliding[k];
       largest_overlap = std::max(largest_overlap, double(relative_overlap[k]));
     } else {
       memory = ContactMemory{};
+      if (rolling_spring) pairs.rolling[slot[k]].setZero();
     }
   }
 }
 
-template <class Law>
-double evaluate_pairs(const ForceInput& in, PairContacts& pairs, std::size_t begin, std::size_t end) {
+template <class Law, bool Keep>
+void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number) {
   const Particles& p = in.particles;
-  std::array<std::uint32_t, pack_width> slot{};
+  const std::size_t begin = number * PairContacts::chunk_size, end = std::min(begin + PairContacts::chunk_size, pairs.list.size());
+  Lanes slot{};
   std::size_t count = 0;
   double largest_overlap = 0;
+  PackedSums sums;
+  const auto block = [&] { evaluate_pair_block<Law, Keep>(law, in, pairs, slot, count, largest_overlap, sums); };
   for (std::size_t s = begin; s < end; ++s) {
     const std::uint32_t i = pairs.list.first[s], j = pairs.list.second[s];
-    const double reach = p.radius[i] + p.radius[j];
+    const double reach = p.radius[i] + p.radius[j] + pairs.reach_beyond_touch;
     const bool candidate =
         pairs.memory[s].touched || (p.position[i] - p.position[j]).squaredNorm() < reach * reach;
     if (!candidate) {
@@ -121,20 +249,49 @@ double evaluate_pairs(const ForceInput& in, PairContacts& pairs, std::size_t beg
     }
     slot[count++] = std::uint32_t(s);
     if (count == pack_width) {
-      evaluate_pair_block<Law>(in, pairs, slot, count, largest_overlap);
+      block();
       count = 0;
     }
   }
   if (count > 0) {
     for (std::size_t k = count; k < pack_width; ++k) slot[k] = slot[0];
-    evaluate_pair_block<Law>(in, pairs, slot, count, largest_overlap);
+    block();
   }
-  return largest_overlap;
+  pairs.chunk[number].largest_overlap = largest_overlap;
+  if constexpr (Keep) pairs.chunk[number].ledger = sums.sum();
+}
+
+// A contact that its wall no longer has: it broke, or its feature gave way to another while it was loaded and what it stored
+// is lost.
+template <class Law>
+void book_end(const Law& law, const WallContact& contact, const PairConstants<double>& c, const Particles& p, std::uint32_t i,
+              double dt, LedgerSums& sums) {
+  const LastForces& last = contact.last;
+  const Vec3 u = p.velocity[i] + (last.arm_i * p.angular_velocity[i]).cross(last.normal) - last.wall_velocity;
+  const Vec3 force = last.tangential_elastic + last.tangential_viscous - (last.elastic + last.damping) * last.normal;
+  const double taken =
+      -0.5 * dt * (force.dot(u) + last.rolling_i.dot(p.angular_velocity[i]) + last.rolling_j.dot(last.wall_spin));
+  const double expected_overlap = p.radius[i] - contact.touch.distance + dt * u.dot(last.normal);
+  const auto [break_overlap, break_energy] = with_part<NormalLaws>(
+      law.normal, [&](auto part) { return std::pair(part.break_overlap(c), part.break_energy(c)); });
+  const bool broke = expected_overlap < break_overlap;
+  const double detachment =
+      (broke ? break_energy : last.normal_energy) + last.tangential_energy + last.rolling_energy;
+  sums.detachment += detachment;
+  sums.time_stepping += taken + last.energy().total() - detachment;
+}
+
+void take_over(WallContact& contact, const WallContact& from) {
+  contact.memory = from.memory;
+  contact.rolling = from.rolling;
+  contact.last = from.last;
 }
 
 // Carries memory from the places a grain touched in the last step to those it touches now: first the same feature, then,
-// where the grain rolled from one feature to its neighbour, the remaining place with the most similar normal.
-void inherit(WallCandidate& candidate, const std::vector<WallTouch>& touches) {
+// where the grain rolled from one feature to its neighbour, the remaining place with the most similar normal. Calls
+// ended(contact) for formed contacts that nothing inherits.
+template <class Ended>
+void inherit(WallCandidate& candidate, const std::vector<WallTouch>& touches, Ended ended) {
   const std::size_t old_size = candidate.size;
   if (old_size == 1 && touches.size() == 1 && candidate.contact[0].touch.feature == touches[0].feature) {
     candidate.contact[0].touch = touches[0];
@@ -149,7 +306,7 @@ void inherit(WallCandidate& candidate, const std::vector<WallTouch>& touches) {
     candidate.contact[k].touch = touches[k];
     for (std::size_t o = 0; o < old_size; ++o)
       if (!taken[o] && old[o].touch.feature == touches[k].feature) {
-        candidate.contact[k].memory = old[o].memory;
+        take_over(candidate.contact[k], old[o]);
         taken[o] = true;
       }
   }
@@ -166,10 +323,12 @@ void inherit(WallCandidate& candidate, const std::vector<WallTouch>& touches) {
       }
     }
     if (best < old_size) {
-      contact.memory = old[best].memory;
+      take_over(contact, old[best]);
       taken[best] = true;
     }
   }
+  for (std::size_t o = 0; o < old_size; ++o)
+    if (!taken[o] && old[o].memory.touched) ended(old[o]);
 }
 
 struct WallSlot {
@@ -177,81 +336,97 @@ struct WallSlot {
   WallContact* contact;
 };
 
-template <class Law>
-void evaluate_wall_block(const ForceInput& in, WallContacts& walls,
-                         const std::array<WallSlot, pack_width>& slot, std::size_t count, WallContacts::Chunk& chunk) {
+template <class Law, bool Keep>
+void evaluate_wall_block(const Law& law, const ForceInput& in, WallContacts& walls,
+                         const std::array<WallSlot, pack_width>& slot, std::size_t count, WallContacts::Chunk& chunk,
+                         PackedSums& sums) {
   const Particles& p = in.particles;
   const WallPose& pose = in.poses[chunk.wall];
   const auto i = [&](std::size_t k) { return slot[k].candidate->particle; };
 
-  PairConstants<Pack> c = gather_materials([&](std::size_t k) -> const auto& { return slot[k].candidate->constants; });
+  PairConstants<Pack> c =
+      gather_materials(false, [&](std::size_t k) -> const auto& { return slot[k].candidate->constants; });
   c.effective_radius = gather([&](std::size_t k) { return slot[k].candidate->constants.effective_radius; });
   c.effective_mass = gather([&](std::size_t k) { return slot[k].candidate->constants.effective_mass; });
   c.effective_inertia = gather([&](std::size_t k) { return slot[k].candidate->constants.effective_inertia; });
   c.adhesion_length = gather([&](std::size_t k) { return slot[k].candidate->constants.adhesion_length; });
 
   const Pack radius = gather([&](std::size_t k) { return p.radius[i(k)]; });
-  const Triple<Pack> spin = gather_triple([&](std::size_t k) -> const Vec3& { return p.angular_velocity[i(k)]; });
   Touch<Pack> touch;
+  touch.spin_i = gather_triple([&](std::size_t k) -> const Vec3& { return p.angular_velocity[i(k)]; });
+  touch.spin_j = all_lanes(pose.angular_velocity);
+  touch.arm_i = radius;
+  touch.arm_j = 0.0;
   touch.overlap = radius - gather([&](std::size_t k) { return slot[k].contact->touch.distance; });
   touch.normal = gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->touch.normal; });
   const Triple<Pack> arm = touch.normal * radius;
   const Triple<Pack> position = gather_triple([&](std::size_t k) -> const Vec3& { return p.position[i(k)]; });
-  const Triple<Pack> origin{Pack(pose.position.x()), Pack(pose.position.y()), Pack(pose.position.z())};
-  const Triple<Pack> wall_spin{Pack(pose.angular_velocity.x()), Pack(pose.angular_velocity.y()),
-                               Pack(pose.angular_velocity.z())};
-  const Triple<Pack> wall_velocity{Pack(pose.velocity.x()), Pack(pose.velocity.y()), Pack(pose.velocity.z())};
-  touch.velocity = gather_triple([&](std::size_t k) -> const Vec3& { return p.velocity[i(k)]; }) + cross(spin, arm) -
-                   (wall_velocity + cross(wall_spin, position + arm - origin));
-  touch.spin = spin - wall_spin;
+  const Triple<Pack> velocity = gather_triple([&](std::size_t k) -> const Vec3& { return p.velocity[i(k)]; });
+  const Triple<Pack> wall_velocity =
+      all_lanes(pose.velocity) + cross(touch.spin_j, position + arm - all_lanes(pose.position));
+  touch.velocity = velocity + cross(touch.spin_i, arm) - wall_velocity;
 
-  const Pack touched = gather([&](std::size_t k) { return slot[k].contact->memory.touched ? 1.0 : 0.0; });
-  const Mask<Pack> holds = Law::holds(touch.overlap, touched > Pack(0.5), c);
-  Triple<Pack> spring = gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->memory.spring; });
-  const ContactForce<Pack> f = Law::evaluate(touch, c, spring, Pack(in.dt));
-  const Triple<Pack> force = f.tangential - touch.normal * (f.elastic + f.damping);
-  const Triple<Pack> torque = cross(arm, f.tangential) + f.rolling_torque;
+  const Mask<Pack> touched = gather([&](std::size_t k) { return slot[k].contact->memory.touched ? 1.0 : 0.0; }) > Pack(0.5);
+  const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
+  Springs<Pack> springs{gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->memory.spring; }),
+                        gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->rolling; }),
+                        gather([&](std::size_t k) { return slot[k].contact->memory.contact_radius; })};
+  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Pack(in.dt));
+  const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
+  const Triple<Pack> force = tangential - touch.normal * (f.normal.elastic + f.damping);
+  const Triple<Pack> torque = cross(arm, tangential) + f.rolling.on_i;
+  if constexpr (Keep)
+    book(law, touch, c, f, hold, touched, first_lanes(count), velocity, true, wall_velocity, in.dt, count,
+         [&](std::size_t k) -> LastForces& { return slot[k].contact->last; }, sums);
 
   for (std::size_t k = 0; k < count; ++k) {
     WallContact& contact = *slot[k].contact;
-    contact.acts = holds[k];
-    if (!holds[k]) {
+    contact.acts = hold[k];
+    if (!hold[k]) {
       contact.memory = ContactMemory{};
+      contact.rolling.setZero();
       continue;
     }
     ++walls.acts[slot[k].candidate - walls.candidate.data()];
     if (!contact.memory.touched) contact.memory.birth_step = in.step;
     contact.memory.touched = true;
-    contact.memory.spring = lane_of(spring, k);
+    contact.memory.spring = lane_of(springs.tangential, k);
+    contact.memory.contact_radius = springs.contact_radius[k];
+    contact.rolling = lane_of(springs.rolling, k);
     contact.force = lane_of(force, k);
     contact.torque = lane_of(torque, k);
-    contact.tangential = lane_of(f.tangential, k);
-    contact.rolling_torque = lane_of(f.rolling_torque, k);
-    contact.elastic = f.elastic[k];
+    contact.tangential = lane_of(tangential, k);
+    contact.elastic = f.normal.elastic[k];
     contact.damping = f.damping[k];
-    contact.sliding = f.sliding[k];
+    contact.sliding = f.tangential.sliding[k];
     const Vec3 lever = p.position[i(k)] + p.radius[i(k)] * contact.touch.normal - pose.position;
-    chunk.load.force -= contact.force;
-    chunk.load.torque -= lever.cross(contact.force) + contact.rolling_torque;
+    const WallLoad load{-contact.force, lane_of(f.rolling.on_j, k) - lever.cross(contact.force)};
+    chunk.load += load;
+    if (const auto* mesh = std::get_if<MeshWall>(&in.walls[chunk.wall].shape))
+      chunk.load_of_label[std::size_t(mesh->finder->mesh().labels[contact.touch.facet])] += load;
     chunk.largest_overlap = std::max(chunk.largest_overlap, touch.overlap[k] / p.radius[i(k)]);
   }
 }
 
-template <class Law>
-void evaluate_wall_chunk(const ForceInput& in, WallContacts& walls, WallContacts::Chunk& chunk) {
+template <class Law, bool Keep>
+void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& walls, WallContacts::Chunk& chunk) {
   std::vector<WallTouch>& touches = chunk.touches;
   const Particles& p = in.particles;
   const Wall& wall = in.walls[chunk.wall];
   const WallPose& pose = in.poses[chunk.wall];
   std::array<WallSlot, pack_width> slot{};
   std::size_t count = 0;
+  PackedSums sums;
   chunk.load = WallLoad{};
+  chunk.load_of_label.fill(WallLoad{});
   chunk.largest_overlap = 0;
+  chunk.ledger = LedgerSums{};
+  const auto block = [&] { evaluate_wall_block<Law, Keep>(law, in, walls, slot, count, chunk, sums); };
   for (std::uint32_t q = chunk.begin; q < chunk.end; ++q) {
     WallCandidate& candidate = walls.candidate[q];
     const double radius = p.radius[candidate.particle];
-    const double reach = radius - Law::Normal::break_overlap(candidate.constants);
-    nearest(wall, pose, p.position[candidate.particle], reach,
+    const double last = last_overlap(law, candidate.constants);
+    nearest(wall, pose, p.position[candidate.particle], radius - last,
             std::span(walls.triangles).subspan(candidate.triangle_begin, candidate.triangle_end - candidate.triangle_begin),
             touches, chunk.scratch);
     if (touches.empty() && candidate.size == 0) continue;  // acts is 0 already
@@ -259,36 +434,37 @@ void evaluate_wall_chunk(const ForceInput& in, WallContacts& walls, WallContacts
       chunk.overflow = true;
       touches.resize(WallCandidate::capacity);
     }
-    inherit(candidate, touches);
+    inherit(candidate, touches, [&](const WallContact& ended) {
+      if constexpr (Keep) book_end(law, ended, candidate.constants, p, candidate.particle, in.dt, chunk.ledger);
+    });
     walls.acts[q] = 0;
     for (std::size_t t = 0; t < candidate.size; ++t) {
-      WallContact& contact = candidate.contact[t];
-      contact.acts = false;
-      if (!contact.memory.touched && contact.touch.distance >= radius) continue;
-      slot[count++] = {&candidate, &contact};
+      slot[count++] = {&candidate, &candidate.contact[t]};
+      candidate.contact[t].acts = false;
       if (count == pack_width) {
-        evaluate_wall_block<Law>(in, walls, slot, count, chunk);
+        block();
         count = 0;
       }
     }
   }
   if (count > 0) {
     for (std::size_t k = count; k < pack_width; ++k) slot[k] = slot[0];
-    evaluate_wall_block<Law>(in, walls, slot, count, chunk);
+    block();
   }
+  if constexpr (Keep) chunk.ledger += sums.sum();
 }
 
-template <class Law>
-double evaluate_all(const ForceInput& in, PairContacts& pairs, WallContacts& walls) {
-  double largest_overlap = 0;
-#pragma omp parallel reduction(max : largest_overlap) if (pairs.list.size() > few_pairs)
+template <class Law, bool Keep>
+double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls) {
+#pragma omp parallel if (pairs.list.size() > few_pairs)
   {
-    const std::size_t threads = std::size_t(omp_get_num_threads()), mine = std::size_t(omp_get_thread_num());
 #pragma omp for schedule(dynamic, 1) nowait
-    for (std::size_t k = 0; k < walls.chunk.size(); ++k) evaluate_wall_chunk<Law>(in, walls, walls.chunk[k]);
-    const std::size_t n = pairs.list.size();
-    largest_overlap = evaluate_pairs<Law>(in, pairs, n * mine / threads, n * (mine + 1) / threads);
+    for (std::size_t k = 0; k < walls.chunk.size(); ++k) evaluate_wall_chunk<Law, Keep>(law, in, walls, walls.chunk[k]);
+#pragma omp for schedule(static)
+    for (std::size_t k = 0; k < pairs.chunk.size(); ++k) evaluate_pair_chunk<Law, Keep>(law, in, pairs, k);
   }
+  double largest_overlap = 0;
+  for (const PairContacts::Chunk& chunk : pairs.chunk) largest_overlap = std::max(largest_overlap, chunk.largest_overlap);
   for (const WallContacts::Chunk& chunk : walls.chunk) {
     largest_overlap = std::max(largest_overlap, chunk.largest_overlap);
     if (chunk.overflow)
@@ -299,17 +475,19 @@ double evaluate_all(const ForceInput& in, PairContacts& pairs, WallContacts& wal
   return largest_overlap;
 }
 
-using Evaluate = double (*)(const ForceInput&, PairContacts&, WallContacts&);
-template <std::size_t... Row>
-constexpr auto evaluate_table(std::index_sequence<Row...>) {
-  return std::array<Evaluate, sizeof...(Row)>{&evaluate_all<std::tuple_element_t<Row, ContactLaws>>...};
+template <class Law>
+double evaluate_all(const Law& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls) {
+  return keep_ledger ? evaluate_all<Law, true>(law, in, pairs, walls) : evaluate_all<Law, false>(law, in, pairs, walls);
 }
 
 }  // namespace
 
-double evaluate_contacts(std::size_t law, const ForceInput& in, PairContacts& pairs, WallContacts& walls) {
-  constexpr auto table = evaluate_table(std::make_index_sequence<std::tuple_size_v<ContactLaws>>{});
-  return table.at(law)(in, pairs, walls);
+double evaluate_contacts(const LawChoice& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls) {
+  double overlap = 0;
+  const bool compiled = [&]<class... Fixed>(std::type_identity<std::tuple<Fixed...>>) {
+    return ((law == choice_of<Fixed>() && (overlap = evaluate_all(Fixed{}, keep_ledger, in, pairs, walls), true)) || ...);
+  }(std::type_identity<FixedLaws>{});
+  return compiled ? overlap : evaluate_all(law, keep_ledger, in, pairs, walls);
 }
 
 }  // namespace dem

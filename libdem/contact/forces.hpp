@@ -1,6 +1,7 @@
-// The one hot loop: every contact of the run through its law. Templated on the law, instantiated from the table in laws.hpp.
+// The one hot loop: every contact of the run through its law.
 #pragma once
 #include "libdem/contact/contact_store.hpp"
+#include "libdem/contact/laws.hpp"
 
 namespace dem {
 
@@ -13,9 +14,9 @@ struct ForceInput {
   std::uint64_t step;
 };
 
-// Evaluates all contacts with the law in row `law` of the table; memory and results of the stores change. Returns the
-// largest overlap over the smaller radius. Results do not depend on the number of threads. Throws PhysicsError where a
-// sphere touches one wall in more places than WallCandidate::capacity.
-double evaluate_contacts(std::size_t law, const ForceInput& in, PairContacts& pairs, WallContacts& walls);
+// Evaluates all contacts with the law; memory, results and, where one is kept, the ledger sums of the stores' chunks change.
+// Returns the largest overlap over the smaller radius. Results do not depend on the number of threads. Throws PhysicsError
+// where a sphere touches one wall in more places than WallCandidate::capacity.
+double evaluate_contacts(const LawChoice& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls);
 
 }  // namespace dem

@@ -1,7 +1,15 @@
-// A contact law is a composition of three parts, written once for every number type and every kind of contact.
+// A contact law is a composition of five parts, each a row of a table in laws.hpp: normal force, damping, friction limit,
+// tangential spring, rolling resistance. Every part is written once, for every number type and every kind of contact.
+//
+// Which parts a run composes is a choice of rows. A Law says it: either the rows are numbers (LawChoice), and every part is
+// chosen when a block of contacts is evaluated; or they are constants (FixedLaw), and the compiler makes one piece of code of
+// the composition. Both run the same text and give the same bits.
 #pragma once
 #include <concepts>
+#include <cstdint>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 
 #include "libdem/contact/touch.hpp"
 
@@ -10,50 +18,57 @@ namespace dem {
 template <class T>
 concept NormalLaw = requires(const double& overlap, const PairConstants<double>& c) {
   { T::name } -> std::convertible_to<std::string_view>;
+  { T::adhesive } -> std::convertible_to<bool>;
+  { T::form_overlap(c) } -> std::same_as<double>;
   { T::break_overlap(c) } -> std::same_as<double>;
+  { T::form_energy(c) } -> std::same_as<double>;
+  { T::break_energy(c) } -> std::same_as<double>;
   { T::evaluate(overlap, c) } -> std::same_as<NormalForce<double>>;
 };
 
 template <class T>
-concept TangentialLaw = requires(const Touch<double>& t, const PairConstants<double>& c, const NormalForce<double>& n,
-                                 Triple<double>& spring, const double& dt) {
+concept DampingLaw = requires(const double& overlap, const NormalForce<double>& n, const PairConstants<double>& c) {
   { T::name } -> std::convertible_to<std::string_view>;
-  { T::evaluate(t, c, n, spring, dt) } -> std::same_as<TangentialForce<double>>;
+  { T::ratio(overlap) } -> std::same_as<double>;
+  { T::evaluate(overlap, n, c) } -> std::same_as<DampingCoefficients<double>>;
+};
+
+template <class T>
+concept FrictionLimit = requires(const NormalForce<double>& n) {
+  { T::name } -> std::convertible_to<std::string_view>;
+  { T::needs_jkr } -> std::convertible_to<bool>;
+  { T::load(n) } -> std::same_as<double>;
+};
+
+template <class T>
+concept TangentialLaw = requires(const Touch<double>& t, const PairConstants<double>& c, const NormalForce<double>& n,
+                                 const double& x, Springs<double>& springs) {
+  { T::name } -> std::convertible_to<std::string_view>;
+  { T::has_spring } -> std::convertible_to<bool>;
+  { T::evaluate(t, c, n, x, x, springs, x) } -> std::same_as<TangentialForce<double>>;
 };
 
 template <class T>
 concept RollingLaw = requires(const Touch<double>& t, const PairConstants<double>& c, const NormalForce<double>& n,
-                              const double& dt) {
+                              const double& dt, Springs<double>& springs) {
   { T::name } -> std::convertible_to<std::string_view>;
-  { T::evaluate(t, c, n, dt) } -> std::same_as<Triple<double>>;
+  { T::has_spring } -> std::convertible_to<bool>;
+  { T::objective } -> std::convertible_to<bool>;
+  { T::evaluate(t, c, n, springs, dt) } -> std::same_as<RollingTorque<double>>;
 };
 
-template <NormalLaw Normal_, TangentialLaw Tangential_, RollingLaw Rolling_>
-struct ContactLaw {
-  using Normal = Normal_;
-  using Tangential = Tangential_;
-  using Rolling = Rolling_;
-
-  // Is the contact there? It forms at positive overlap and lasts until the normal law lets go.
-  template <class Real>
-  static Mask<Real> holds(const Real& overlap, const Mask<Real>& touched, const PairConstants<Real>& c) {
-    return (overlap > Real(0.0)) || (touched && (overlap >= Normal::break_overlap(c)));
+// Calls f with the part in row `row` of a table. Row: a number, or an integral constant, for which nothing is chosen at run
+// time. A row beyond the table is the last one.
+template <class Table, std::size_t K = 0, class Row, class F>
+decltype(auto) with_part(const Row& row, F&& f) {
+  if constexpr (requires { Row::value; }) {
+    return f(std::tuple_element_t<Row::value, Table>{});
+  } else if constexpr (K + 1 == std::tuple_size_v<Table>) {
+    return f(std::tuple_element_t<K, Table>{});
+  } else {
+    if (row == K) return f(std::tuple_element_t<K, Table>{});
+    return with_part<Table, K + 1>(row, static_cast<F&&>(f));
   }
-
-  // Forces on i, and the tangential spring [m] advanced by dt [s]. Normal damping as in EDEM's Hertz-Mindlin model:
-  // F_d = 2 sqrt(5/6) beta sqrt(2 E* a m*) v_n, here with the law's own contact radius a, so that it is continuous through
-  // zero overlap. Without adhesion the restitution is exactly the one that beta was made from.
-  template <class Real>
-  static ContactForce<Real> evaluate(const Touch<Real>& touch, const PairConstants<Real>& c, Triple<Real>& spring,
-                                     const Real& dt) {
-    const NormalForce<Real> normal = Normal::evaluate(touch.overlap, c);
-    const Real v_n = dot(touch.velocity, touch.normal);  // > 0 closing
-    const Real stiffness = 2.0 * c.effective_modulus * normal.contact_radius;
-    const Real damping =
-        (2 * 0.91287092917527690) * c.damping_ratio * square_root(stiffness * c.effective_mass) * v_n;
-    const TangentialForce<Real> tangential = Tangential::evaluate(touch, c, normal, spring, dt);
-    return {normal.elastic, damping, tangential.force, Rolling::evaluate(touch, c, normal, dt), tangential.sliding};
-  }
-};
+}
 
 }  // namespace dem

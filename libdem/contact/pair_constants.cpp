@@ -3,7 +3,7 @@
 namespace dem {
 
 MaterialTable make_material_table(const std::vector<Material>& materials,
-                                  const std::vector<std::vector<Interaction>>& interactions) {
+                                  const std::vector<std::vector<Interaction>>& interactions, const LawChoice& choice) {
   MaterialTable table{materials.size(), {}};
   for (std::size_t a = 0; a < materials.size(); ++a) {
     for (std::size_t b = 0; b < materials.size(); ++b) {
@@ -11,9 +11,11 @@ MaterialTable make_material_table(const std::vector<Material>& materials,
       const Interaction& law = interactions[a][b];
       c.effective_modulus = effective_modulus(materials[a], materials[b]);
       c.effective_shear = effective_shear_modulus(materials[a], materials[b]);
-      c.damping_ratio = damping_ratio(law.restitution);
+      c.damping_ratio =
+          with_part<DampingLaws>(choice.damping, [&](auto part) { return part.ratio(law.restitution); });
       c.friction = law.friction;
       c.rolling_friction = law.rolling_friction;
+      c.rolling_damping = law.rolling_damping;
       c.work_of_adhesion = law.work_of_adhesion;
       table.pair.push_back(c);
     }

@@ -5,17 +5,9 @@
 #include <vector>
 
 #include "libdem/case/derived.hpp"
-#include "libdem/contact/touch.hpp"
+#include "libdem/contact/laws.hpp"
 
 namespace dem {
-
-// Damping ratio whose damped Hertz impact without adhesion returns with `restitution`, if the contact ends at zero
-// overlap: -ln e / sqrt(ln^2 e + pi^2). Tsuji (1992); exact by the substitution w = overlap^(5/4).
-inline double damping_ratio(double restitution) {
-  if (restitution <= 0) return 1;
-  const double l = std::log(restitution);
-  return -l / std::sqrt(l * l + std::numbers::pi * std::numbers::pi);
-}
 
 // a0^2/R* = (4 pi^2 W^2 R*/E*^2)^(1/3), m: the overlap at which JKR's contact radius would follow a^2 = R* overlap alone.
 inline double adhesion_length(double work_of_adhesion, double effective_radius, double modulus) {
@@ -35,7 +27,7 @@ struct MaterialTable {
   const PairConstants<double>& operator()(std::size_t a, std::size_t b) const { return pair[a * size + b]; }
 };
 MaterialTable make_material_table(const std::vector<Material>& materials,
-                                  const std::vector<std::vector<Interaction>>& interactions);
+                                  const std::vector<std::vector<Interaction>>& interactions, const LawChoice& law = {});
 
 struct BodyConstants {
   double radius, mass, inertia;

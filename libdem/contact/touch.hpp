@@ -1,8 +1,8 @@
 // What a contact law is given and what it gives back, for particle-particle and particle-wall contacts alike.
 //
-// Signs, once: overlap > 0 in contact; the normal points from i to j (from the particle to the wall); velocity and spin are
-// those of i relative to j; forces and torques are those on i. The contact point divides the branch vector in the ratio of
-// the radii; against a wall that puts it at one radius from the particle's centre. It is one point for both bodies, so
+// Signs, once: overlap > 0 in contact; the normal points from i to j (from the particle to the wall); velocity is that of i
+// relative to j; forces and torques are those on i, unless named _j. The contact point divides the branch vector in the ratio
+// of the radii; against a wall that puts it at one radius from the particle's centre. It is one point for both bodies, so
 // linear and angular momentum are conserved to rounding.
 #pragma once
 #include "libdem/contact/number.hpp"
@@ -14,7 +14,8 @@ struct Touch {
   Real overlap;           // m
   Triple<Real> normal;    // unit
   Triple<Real> velocity;  // m/s, of i's material point at the contact relative to j's
-  Triple<Real> spin;      // rad/s, angular velocity of i relative to j
+  Triple<Real> spin_i, spin_j;  // rad/s, of the two bodies; a wall is body j
+  Real arm_i, arm_j;      // m, from the centres to the contact point; 0 for a wall
 };
 
 // Constants of one contact: of the two materials, and of the two bodies.
@@ -22,9 +23,10 @@ template <class Real>
 struct PairConstants {
   Real effective_modulus;   // Pa, E*: 1/E* = (1-nu_i^2)/E_i + (1-nu_j^2)/E_j
   Real effective_shear;     // Pa, G*: 1/G* = (2-nu_i)/G_i + (2-nu_j)/G_j
-  Real damping_ratio;       // 1, -ln e / sqrt(ln^2 e + pi^2) >= 0
+  Real damping_ratio;       // 1, >= 0, made from the restitution by the damping law's ratio()
   Real friction;            // 1
   Real rolling_friction;    // 1
+  Real rolling_damping;     // 1, share of critical damping of an elastic rolling resistance
   Real work_of_adhesion;    // J/m^2
   Real effective_radius;    // m, R*: 1/R* = 1/R_i + 1/R_j
   Real effective_mass;      // kg
@@ -32,26 +34,51 @@ struct PairConstants {
   Real adhesion_length;     // m, a0^2/R* = (4 pi^2 W^2 R*/E*^2)^(1/3); 0 without adhesion
 };
 
+// What a contact remembers between steps.
+template <class Real>
+struct Springs {
+  Triple<Real> tangential;  // m, elastic tangential displacement of i relative to j
+  Triple<Real> rolling;     // N m, elastic part of the rolling torque on i
+  Real contact_radius;      // m, of the step before; 0 for a new contact
+};
+
 template <class Real>
 struct NormalForce {
   Real elastic;         // N, > 0 repulsive; adhesion included
   Real contact_radius;  // m
-  Real friction_load;   // N, what Coulomb's limit multiplies
+  Real repulsive;       // N, without the part that adhesion pulls with
+  Real pull_off;        // N, largest tension the contact carries; 0 without adhesion
+  Real energy;          // J, integral of the elastic force over the overlap; 0 for separated bodies
+  Real surface_energy;  // J, <= 0, the part of `energy` that is gained by closing surfaces
+};
+
+// kg/s: what multiplies the closing speed and the sliding speed.
+template <class Real>
+struct DampingCoefficients {
+  Real normal, tangential;
+};
+
+// The force on i is elastic + viscous. In the ledger's columns: `energy` is stored in the spring, `slip_work` is what sliding
+// turned into heat in this step, `stiffness_work` what the spring gained because its stiffness changed under it.
+template <class Real>
+struct TangentialForce {
+  Triple<Real> elastic, viscous;               // N on i
+  Mask<Real> sliding;                          // at the friction limit
+  Real energy, slip_work, stiffness_work;      // J
 };
 
 template <class Real>
-struct TangentialForce {
-  Triple<Real> force;    // N on i
-  Mask<Real> sliding;
+struct RollingTorque {
+  Triple<Real> on_i, on_j;  // N m
+  Real energy;              // J, stored
 };
 
 template <class Real>
 struct ContactForce {
-  Real elastic;                 // N, normal, > 0 repulsive
-  Real damping;                 // N, normal, > 0 pushes apart
-  Triple<Real> tangential;      // N on i
-  Triple<Real> rolling_torque;  // N m on i
-  Mask<Real> sliding;
+  NormalForce<Real> normal;
+  Real damping;  // N, normal, > 0 pushes apart
+  TangentialForce<Real> tangential;
+  RollingTorque<Real> rolling;
 };
 
 }  // namespace dem

@@ -11,6 +11,7 @@ using Vec3 = Eigen::Vector3d;
 
 // What part of a blade a triangle belongs to; recorded with its contacts.
 enum class FacetLabel : std::uint8_t { face = 0, edge = 1, tip = 2, hub = 3 };
+inline constexpr std::size_t facet_labels = 4;
 
 struct TriangleMesh {
   std::vector<Vec3> vertices;                           // m

@@ -1,36 +1,22 @@
 #include "libdem/simulation/simulation.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <numeric>
 #include <tuple>
 
 #include "libdem/contact/forces.hpp"
-#include "libdem/contact/laws.hpp"
 #include "libdem/errors.hpp"
 #include "libdem/neighbors/pair_list.hpp"
+#include "libdem/simulation/guards.hpp"
 
 namespace dem {
 namespace {
 
-// Overlap over radius from which no contact law here means anything any more.
-constexpr double runaway_overlap = 0.5;
 // Grains of one wall that are handled as one piece of work and summed in order.
 constexpr std::uint32_t chunk_size = 32;
 // Below this many grains waking other threads costs more than they save.
 constexpr std::size_t few_grains = 500;
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
-
-std::string place(const Particles& p, std::size_t i, double time) {
-  return "grain " + std::to_string(p.id[i]) + " at (" + number(p.position[i].x() * 1e3) + ", " +
-         number(p.position[i].y() * 1e3) + ", " + number(p.position[i].z() * 1e3) + ") mm, t = " + number(time) + " s";
-}
 
 }  // namespace
 
@@ -51,13 +37,18 @@ struct Simulation::Engine {
   PairContacts pairs;
   WallContacts walls;
   std::vector<WallLoad> loads;  // [walls] of the last evaluation
+  bool rolling_spring = false;
+
+  LedgerSums spent;
+  double initial_energy = 0;                  // J
+  std::vector<double> wall_work, last_power;  // [walls] J, W
 
   Window window;
   std::vector<Window::Load> load_sum;
 
   Engine(Setup s, State state) : setup(std::move(s)), step(state.step), p(std::move(state.particles)) {
     check_input();
-    materials = make_material_table(setup.materials, setup.interactions);
+    materials = make_material_table(setup.materials, setup.interactions, setup.law);
     const std::size_t n = p.size();
     mass.resize(n);
     inertia.resize(n);
@@ -66,6 +57,9 @@ struct Simulation::Engine {
       inertia[i] = sphere_inertia(mass[i], p.radius[i]);
     }
     compressive.assign(n, 0.0);
+    rolling_spring = with_part<RollingLaws>(setup.law.rolling, [](auto part) { return part.has_spring; });
+    wall_work.assign(setup.walls.size(), 0.0);
+    last_power.assign(setup.walls.size(), 0.0);
     mean_radius = n ? std::accumulate(p.radius.begin(), p.radius.end(), 0.0) / double(n) : 1.0;
     skin = 0.1 * mean_radius;
     for (const Wall& w : setup.walls) wall_speed = std::max(wall_speed, largest_speed(w));
@@ -80,17 +74,26 @@ struct Simulation::Engine {
       sum_and_move(false);
       sum_wall_loads();
       begin_window();  // windows cover the steps after the start
+      for (std::size_t w = 0; w < loads.size(); ++w) last_power[w] = power_into_grains(w);
+      if (setup.keep_ledger) initial_energy = ledger().total();
     } else {
       force = std::move(state.force);
       torque = std::move(state.torque);
       sum_wall_loads();
+      if (setup.keep_ledger) {
+        spent = state.ledger.spent;
+        initial_energy = state.ledger.initial;
+        wall_work = state.ledger.wall_work;
+        last_power = state.ledger.last_power;
+      }
     }
   }
 
   void check_input() const {
     const std::size_t n = p.size(), m = setup.materials.size();
     if (!(setup.step > 0)) throw CaseError("the time step is " + number(setup.step) + " s, expected > 0");
-    if (setup.law >= std::tuple_size_v<ContactLaws>) throw CaseError("no such contact law");
+    if (const auto why = incompatible(setup.law)) throw CaseError(*why);
+    if (setup.keep_ledger && setup.drag != 0) throw CaseError("an energy ledger knows no drag, got " + number(setup.drag) + " 1/s");
     if (setup.interactions.size() != m) throw CaseError("expected one row of interactions per material");
     for (const auto& row : setup.interactions)
       if (row.size() != m) throw CaseError("expected one interaction per pair of materials");
@@ -112,8 +115,13 @@ struct Simulation::Engine {
   }
 
   void evaluate(double dt) {
-    const double overlap = evaluate_contacts(setup.law, {p, materials, setup.walls, poses, dt, step}, pairs, walls);
+    const double overlap =
+        evaluate_contacts(setup.law, setup.keep_ledger, {p, materials, setup.walls, poses, dt, step}, pairs, walls);
     window.largest_overlap = std::max(window.largest_overlap, overlap);
+    if (setup.keep_ledger && dt > 0) {
+      for (const PairContacts::Chunk& chunk : pairs.chunk) spent += chunk.ledger;
+      for (const WallContacts::Chunk& chunk : walls.chunk) spent += chunk.ledger;
+    }
   }
 
   // Candidates around the present positions; memory of formed contacts is kept.
@@ -127,7 +135,11 @@ struct Simulation::Engine {
     fresh.acts.assign(count, 0);
     fresh.bodies.resize(count);
     fresh.material_pair.resize(count);
-#pragma omp parallel for schedule(static)
+    if (rolling_spring) fresh.rolling.assign(count, Vec3::Zero());
+    if (setup.keep_ledger) fresh.last.resize(count);
+    fresh.chunk.resize((count + PairContacts::chunk_size - 1) / PairContacts::chunk_size);
+    double reach = 0;
+#pragma omp parallel for schedule(static) reduction(max : reach)
     for (std::size_t i = 0; i < n; ++i) {
       std::size_t old = pairs.list.begin.empty() ? 0 : pairs.list.begin[i];
       const std::size_t old_end = pairs.list.begin.empty() ? 0 : pairs.list.begin[i + 1];
@@ -138,12 +150,16 @@ struct Simulation::Engine {
             pair_constants(materials.pair[pair], {p.radius[i], mass[i], inertia[i]}, {p.radius[j], mass[j], inertia[j]});
         fresh.bodies[s] = {c.effective_radius, c.effective_mass, c.effective_inertia, c.adhesion_length};
         fresh.material_pair[s] = std::uint32_t(pair);
+        reach = std::max(reach, -with_part<NormalLaws>(setup.law.normal, [&](auto part) { return part.form_overlap(c); }));
         while (old < old_end && pairs.list.second[old] < j) ++old;
         if (old < old_end && pairs.list.second[old] == j) {
           fresh.memory[s] = pairs.memory[old];
+          if (rolling_spring) fresh.rolling[s] = pairs.rolling[old];
+          if (setup.keep_ledger) fresh.last[s] = pairs.last[old];
         }
       }
     }
+    fresh.reach_beyond_touch = reach;
     pairs = std::move(fresh);
     build_wall_lists();
     listed_position = p.position;
@@ -207,7 +223,13 @@ struct Simulation::Engine {
   // Puts the memory of a stored state into the fresh lists.
   void remember(const State& state) {
     const std::size_t n = p.size();
-    for (const State::Pair& stored : state.pairs) {
+    const bool goes_on = setup.keep_ledger && !state.force.empty();
+    if (goes_on && (state.ledger.pairs.size() != state.pairs.size() ||
+                    state.ledger.wall_pairs.size() != state.wall_pairs.size() ||
+                    state.ledger.wall_work.size() != setup.walls.size() || state.ledger.last_power.size() != setup.walls.size()))
+      throw CaseError("the stored state has no energy ledger to go on with");
+    for (std::size_t k = 0; k < state.pairs.size(); ++k) {
+      const State::Pair& stored = state.pairs[k];
       if (stored.i >= n || stored.j >= n || stored.i >= stored.j)
         throw CaseError("the stored state has a contact between grains that it does not have");
       const auto begin = pairs.list.second.begin() + pairs.list.begin[stored.i];
@@ -215,20 +237,27 @@ struct Simulation::Engine {
       const auto found = std::lower_bound(begin, end, stored.j);
       if (found == end || *found != stored.j)
         throw CaseError("the stored state has a contact between grains that are apart");
-      pairs.memory[std::size_t(found - pairs.list.second.begin())] = {stored.spring, stored.birth_step, true};
+      const std::size_t slot = std::size_t(found - pairs.list.second.begin());
+      pairs.memory[slot] = {stored.spring, stored.contact_radius, stored.birth_step, true};
+      if (rolling_spring) pairs.rolling[slot] = stored.rolling;
+      if (goes_on) pairs.last[slot] = state.ledger.pairs[k];
     }
-    for (const State::WallPair& stored : state.wall_pairs) {
+    for (std::size_t k = 0; k < state.wall_pairs.size(); ++k) {
+      const State::WallPair& stored = state.wall_pairs[k];
       WallCandidate* candidate = nullptr;
       if (stored.i < n)
-        for (std::uint32_t k = walls.of_particle_begin[stored.i]; k < walls.of_particle_begin[stored.i + 1]; ++k)
-          if (walls.candidate[walls.of_particle[k]].wall == stored.wall) candidate = &walls.candidate[walls.of_particle[k]];
+        for (std::uint32_t q = walls.of_particle_begin[stored.i]; q < walls.of_particle_begin[stored.i + 1]; ++q)
+          if (walls.candidate[walls.of_particle[q]].wall == stored.wall) candidate = &walls.candidate[walls.of_particle[q]];
       if (!candidate || candidate->size == WallCandidate::capacity)
         throw CaseError("the stored state has a contact with a wall that is not there");
       WallContact& contact = candidate->contact[candidate->size++];
       contact = WallContact{};
       contact.touch.feature = stored.feature;
       contact.touch.normal = stored.normal;
-      contact.memory = {stored.spring, stored.birth_step, true};
+      contact.touch.distance = stored.distance;
+      contact.memory = {stored.spring, stored.contact_radius, stored.birth_step, true};
+      contact.rolling = stored.rolling;
+      if (goes_on) contact.last = state.ledger.wall_pairs[k];
     }
   }
 
@@ -307,14 +336,18 @@ struct Simulation::Engine {
 
   void sum_wall_loads() {
     loads.assign(setup.walls.size(), WallLoad{});
-    for (const WallContacts::Chunk& chunk : walls.chunk) {
-      loads[chunk.wall].force += chunk.load.force;
-      loads[chunk.wall].torque += chunk.load.torque;
-    }
+    for (const WallContacts::Chunk& chunk : walls.chunk) loads[chunk.wall] += chunk.load;
+  }
+
+  // W, that the wall puts into the grains at this instant.
+  double power_into_grains(std::size_t w) const {
+    return -(loads[w].force.dot(poses[w].velocity) + loads[w].torque.dot(poses[w].angular_velocity));
   }
 
   void record_walls() {
     sum_wall_loads();
+    for (const WallContacts::Chunk& chunk : walls.chunk)
+      for (std::size_t l = 0; l < facet_labels; ++l) load_sum[chunk.wall].of_label[l] += chunk.load_of_label[l];
     for (std::size_t w = 0; w < setup.walls.size(); ++w) {
       Window::Load& sum = load_sum[w];
       sum.force += loads[w].force;
@@ -323,7 +356,10 @@ struct Simulation::Engine {
       sum.force_max = sum.force_max.cwiseMax(loads[w].force);
       sum.torque_min = sum.torque_min.cwiseMin(loads[w].torque);
       sum.torque_max = sum.torque_max.cwiseMax(loads[w].torque);
-      sum.power -= loads[w].force.dot(poses[w].velocity) + loads[w].torque.dot(poses[w].angular_velocity);
+      const double power = power_into_grains(w);
+      sum.power += power;
+      wall_work[w] += 0.5 * setup.step * (last_power[w] + power);
+      last_power[w] = power;
     }
   }
 
@@ -342,42 +378,17 @@ struct Simulation::Engine {
         build_lists();
       }
       evaluate(setup.step);
-      if (!(window.largest_overlap < runaway_overlap)) stop_for_overlap();
+      if (!(window.largest_overlap < runaway_overlap)) stop_for_overlap(guarded());
       travel2 = sum_and_move(k < steps);
       record_walls();
     }
     guard();
   }
 
-  // Every grain is where a grain can be.
+  GuardInput guarded() const { return {setup, p, mass, inertia, materials, pairs, walls, time()}; }
   void guard() const {
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      if (!p.position[i].allFinite() || !p.velocity[i].allFinite() || !p.angular_velocity[i].allFinite())
-        throw PhysicsError("the motion of " + place(p, i, time()) +
-                           " is no longer a number; likely cause: a time step above the stable limit");
-      if ((p.position[i].array() < setup.low.array()).any() || (p.position[i].array() > setup.high.array()).any())
-        throw PhysicsError(place(p, i, time()) + " has left the vessel with speed " + number(p.velocity[i].norm()) +
-                           " m/s; likely cause: a time step above the stable limit or a gap that pinched it through a wall");
-    }
-  }
-
-  [[noreturn]] void stop_for_overlap() const {
-    for (std::size_t s = 0; s < pairs.list.size(); ++s) {
-      const std::uint32_t i = pairs.list.first[s], j = pairs.list.second[s];
-      const double overlap = p.radius[i] + p.radius[j] - (p.position[i] - p.position[j]).norm();
-      if (pairs.acts[s] && !(overlap < runaway_overlap * std::min(p.radius[i], p.radius[j])))
-        throw PhysicsError("runaway overlap of " + number(overlap * 1e6) + " um between grain " + std::to_string(p.id[j]) +
-                           " and " + place(p, i, time()) + "; likely cause: a time step above the stable limit");
-    }
-    for (const WallCandidate& c : walls.candidate)
-      for (std::size_t k = 0; k < c.size; ++k) {
-        const double overlap = p.radius[c.particle] - c.contact[k].touch.distance;
-        if (c.contact[k].acts && !(overlap < runaway_overlap * p.radius[c.particle]))
-          throw PhysicsError("runaway overlap of " + number(overlap * 1e6) + " um between wall '" +
-                             setup.walls[c.wall].name + "' and " + place(p, c.particle, time()) +
-                             "; likely cause: a time step above the stable limit, or a gap too narrow for the grain");
-      }
-    throw PhysicsError("runaway overlap at t = " + number(time()) + " s");
+    check_motion(guarded());
+    check_stable_step(guarded());
   }
 
   double kinetic_energy() const {
@@ -385,6 +396,23 @@ struct Simulation::Engine {
     for (std::size_t i = 0; i < p.size(); ++i)
       energy += 0.5 * mass[i] * p.velocity[i].squaredNorm() + 0.5 * inertia[i] * p.angular_velocity[i].squaredNorm();
     return energy;
+  }
+
+  Ledger ledger() const {
+    Ledger sum;
+    if (!setup.keep_ledger) return sum;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      sum.kinetic += 0.5 * p.velocity[i].dot(mass[i] * p.velocity[i] + setup.step * force[i]);
+      sum.rotational += 0.5 * p.angular_velocity[i].dot(inertia[i] * p.angular_velocity[i] + setup.step * torque[i]);
+      sum.gravitational -= mass[i] * setup.gravity.dot(p.position[i]);
+    }
+    for (const LastForces& last : pairs.last) sum.stored += last.energy();
+    for (const WallCandidate& c : walls.candidate)
+      for (std::size_t k = 0; k < c.size; ++k) sum.stored += c.contact[k].last.energy();
+    sum.spent = spent;
+    sum.wall_work = wall_work;
+    sum.initial = initial_energy;
+    return sum;
   }
 };
 
@@ -399,6 +427,7 @@ double Simulation::time() const { return engine_->time(); }
 const Setup& Simulation::setup() const { return engine_->setup; }
 const Particles& Simulation::particles() const { return engine_->p; }
 double Simulation::kinetic_energy() const { return engine_->kinetic_energy(); }
+Ledger Simulation::ledger() const { return engine_->ledger(); }
 
 std::size_t Simulation::contacts() const {
   std::size_t count = 0;
@@ -414,18 +443,31 @@ State Simulation::state() const {
   state.particles = e.p;
   state.force = e.force;
   state.torque = e.torque;
-  for (std::size_t s = 0; s < e.pairs.list.size(); ++s)
-    if (e.pairs.memory[s].touched)
-      state.pairs.push_back(
-          {e.pairs.list.first[s], e.pairs.list.second[s], e.pairs.memory[s].spring, e.pairs.memory[s].birth_step});
+  const bool ledger = e.setup.keep_ledger;
+  for (std::size_t s = 0; s < e.pairs.list.size(); ++s) {
+    const ContactMemory& m = e.pairs.memory[s];
+    if (!m.touched) continue;
+    state.pairs.push_back({e.pairs.list.first[s], e.pairs.list.second[s], m.spring, m.birth_step, m.contact_radius,
+                           e.rolling_spring ? e.pairs.rolling[s] : Vec3(Vec3::Zero())});
+    if (ledger) state.ledger.pairs.push_back(e.pairs.last[s]);
+  }
   for (std::uint32_t i = 0; i < e.p.size(); ++i)
     for (std::uint32_t k = e.walls.of_particle_begin[i]; k < e.walls.of_particle_begin[i + 1]; ++k) {
       const WallCandidate& c = e.walls.candidate[e.walls.of_particle[k]];
-      for (std::size_t q = 0; q < c.size; ++q)
-        if (c.contact[q].memory.touched)
-          state.wall_pairs.push_back({i, c.wall, c.contact[q].touch.feature, c.contact[q].touch.normal,
-                                      c.contact[q].memory.spring, c.contact[q].memory.birth_step});
+      for (std::size_t q = 0; q < c.size; ++q) {
+        const WallContact& w = c.contact[q];
+        if (!w.memory.touched) continue;
+        state.wall_pairs.push_back({i, c.wall, w.touch.feature, w.touch.normal, w.memory.spring, w.memory.birth_step,
+                                    w.memory.contact_radius, w.rolling, w.touch.distance});
+        if (ledger) state.ledger.wall_pairs.push_back(w.last);
+      }
     }
+  if (ledger) {
+    state.ledger.spent = e.spent;
+    state.ledger.initial = e.initial_energy;
+    state.ledger.wall_work = e.wall_work;
+    state.ledger.last_power = e.last_power;
+  }
   return state;
 }
 
@@ -467,8 +509,23 @@ View Simulation::view() const {
                                    r.memory.birth_step, r.sliding});
       }
     }
-  for (std::size_t w = 0; w < e.poses.size(); ++w) view.walls.push_back({e.poses[w], e.loads[w].force, e.loads[w].torque});
+  for (std::size_t w = 0; w < e.poses.size(); ++w) view.walls.push_back({e.poses[w], e.loads[w].force, e.loads[w].torque, {}});
+  for (const WallContacts::Chunk& chunk : e.walls.chunk)
+    for (std::size_t l = 0; l < facet_labels; ++l) view.walls[chunk.wall].load_of_label[l] += chunk.load_of_label[l];
   return view;
+}
+
+double Ledger::work() const { return std::accumulate(wall_work.begin(), wall_work.end(), 0.0); }
+
+double Ledger::work_put_in() const {
+  double sum = 0;
+  for (const double w : wall_work) sum += std::max(w, 0.0);
+  return sum;
+}
+
+double Ledger::residual() const {
+  return total() - initial - work() + spent.normal_damping + spent.tangential_damping + spent.sliding + spent.rolling +
+         spent.detachment - spent.stiffness_change + spent.time_stepping;
 }
 
 Window Simulation::take_window() {
@@ -481,8 +538,12 @@ Window Simulation::take_window() {
   const double steps = double(e.step - w.first_step);
   for (Window::Load& load : w.walls) {
     if (steps == 0) {
-      load = Window::Load{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0};
+      load = Window::Load{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0, {}};
       continue;
+    }
+    for (WallLoad& part : load.of_label) {
+      part.force /= steps;
+      part.torque /= steps;
     }
     load.force /= steps;
     load.torque /= steps;

@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "libdem/case/case.hpp"
+#include "libdem/contact/laws.hpp"
+#include "libdem/contact/ledger.hpp"
+#include "libdem/contact/wall_load.hpp"
 #include "libdem/geometry/walls.hpp"
 #include "libdem/particles/particles.hpp"
 
@@ -24,7 +27,8 @@ struct Setup {
   double step = 0;            // s
   double drag = 0;            // 1/s, viscous drag on velocity and spin per mass and inertia; settles beds
   double watch_force = 20;    // N, grains under a larger compressive force are counted in the windows
-  std::size_t law = 0;        // row in ContactLaws (libdem/contact/laws.hpp)
+  LawChoice law;              // parts of the contact law (libdem/contact/laws.hpp)
+  bool keep_ledger = false;   // book where the energy goes (class Ledger); slower. Not with drag
   // A grain whose centre leaves this box is lost and stops the run.
   Vec3 low = Vec3::Constant(-std::numeric_limits<double>::infinity());  // m
   Vec3 high = Vec3::Constant(std::numeric_limits<double>::infinity());  // m
@@ -36,18 +40,49 @@ struct State {
     std::uint32_t i, j;  // rows, i < j
     Vec3 spring;         // m
     std::uint64_t birth_step;
+    double contact_radius = 0;    // m
+    Vec3 rolling = Vec3::Zero();  // N m
   };
   struct WallPair {
     std::uint32_t i, wall;
     std::uint64_t feature;
     Vec3 normal, spring;
     std::uint64_t birth_step;
+    double contact_radius = 0;
+    Vec3 rolling = Vec3::Zero();
+    double distance = 0;  // m, from the centre to the wall
+  };
+  // Of a run that keeps one; `last_power` empty otherwise.
+  struct Ledger {
+    LedgerSums spent;
+    double initial = 0;                         // J
+    std::vector<double> wall_work, last_power;  // [walls] J; W of the last evaluation
+    std::vector<LastForces> pairs, wall_pairs;  // of the contacts below
   };
   std::uint64_t step = 0;
   Particles particles;
   std::vector<Vec3> force, torque;  // [N] of the last evaluation; empty for a fresh start
   std::vector<Pair> pairs;
   std::vector<WallPair> wall_pairs;
+  Ledger ledger;
+};
+
+// J. Where the energy of a run is, and where it went since the run began.
+struct Ledger {
+  // Now. Kinetic energies are those of the leapfrog scheme, m/2 v(n-1/2).v(n+1/2): exactly conserved by a linear spring.
+  double kinetic = 0, rotational = 0;
+  double gravitational = 0;  // -m g.x
+  StoredEnergy stored;
+  // Since the beginning.
+  LedgerSums spent;
+  std::vector<double> wall_work;  // [walls] put into the grains, trapezoid rule over every step
+  double initial = 0;             // total() at the beginning
+
+  double total() const { return kinetic + rotational + gravitational + stored.total(); }
+  double work() const;         // sum of wall_work
+  double work_put_in() const;  // sum of those that are > 0
+  // What the books do not explain, J: rounding, if nothing is forgotten.
+  double residual() const;
 };
 
 // One instant, for recording. Contacts in ascending order of rows (and wall, feature).
@@ -70,6 +105,7 @@ struct WallRecord {
 struct WallInstant {
   WallPose pose;
   Vec3 force, torque;  // N, N m on the wall, torque about the pose position
+  std::array<WallLoad, facet_labels> load_of_label;  // the parts on a mesh's triangles of each FacetLabel; 0 for other walls
 };
 struct View {
   std::uint64_t step = 0;
@@ -95,6 +131,7 @@ struct Window {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // mean
     Vec3 force_min, force_max, torque_min, torque_max;
     double power = 0;  // W, mean of the power that the wall puts into the grains
+    std::array<WallLoad, facet_labels> of_label;  // mean, by FacetLabel of the triangle; meshes only
   };
   std::vector<Load> walls;
 };
@@ -107,7 +144,8 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  // Throws PhysicsError: a number that is not finite, a runaway overlap, a lost grain.
+  // Throws PhysicsError, naming grain, contact, time and likely cause: a number that is not finite, a runaway overlap, a lost
+  // grain, a step above the stable limit of a grain between its contacts.
   void advance(std::uint64_t steps);
 
   std::uint64_t step() const;
@@ -116,6 +154,7 @@ class Simulation {
   const Particles& particles() const;
   std::size_t contacts() const;  // acting now, walls included
   double kinetic_energy() const;  // J, translation and rotation
+  Ledger ledger() const;          // of a run that keeps one; else all zero
   State state() const;
   View view() const;
   Window take_window();

@@ -8,9 +8,22 @@ namespace dem {
 
 struct Hertz {
   static constexpr std::string_view name = "hertz";
+  static constexpr bool adhesive = false;
 
   template <class Real>
+  static Real form_overlap(const PairConstants<Real>&) {
+    return Real(0.0);
+  }
+  template <class Real>
   static Real break_overlap(const PairConstants<Real>&) {
+    return Real(0.0);
+  }
+  template <class Real>
+  static Real form_energy(const PairConstants<Real>&) {
+    return Real(0.0);
+  }
+  template <class Real>
+  static Real break_energy(const PairConstants<Real>&) {
     return Real(0.0);
   }
 
@@ -19,7 +32,7 @@ struct Hertz {
     const Real h = larger(overlap, Real(0.0));
     const Real a = square_root(c.effective_radius * h);
     const Real force = (4.0 / 3.0) * c.effective_modulus * a * h;
-    return {force, a, force};
+    return {force, a, force, Real(0.0), 0.4 * force * h, Real(0.0)};
   }
 };
 

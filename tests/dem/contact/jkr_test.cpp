@@ -53,6 +53,22 @@ TEST(Jkr, BreaksAtFiveNinthsOfThePullOffForce) {
   EXPECT_NEAR(pull_off, 2.985887467696e-4, 1e-15);
 }
 
+// Pulled apart slowly a JKR contact carries F_c at most; its last force is that of the point where it lets go.
+TEST(Jkr, CarriesThePullOffForceAtMost) {
+  const PairConstants<double> c = constants(3.28125e10, 0.274, 2.3125e-4);
+  const double pull_off = pull_off_force(0.274, 2.3125e-4);
+  const auto pulled = [&](auto law) {
+    double largest = 0;
+    const double end = law.break_overlap(c);
+    for (int k = 0; k <= 20000; ++k) largest = std::max(largest, -law.evaluate(end * k / 20000.0, c).elastic);
+    EXPECT_NEAR(largest, pull_off, 1e-8 * pull_off) << law.name;
+    return -law.evaluate(end, c).elastic / pull_off;
+  };
+  EXPECT_NEAR(pulled(Jkr{}), 5.0 / 9.0, 1e-7);
+  EXPECT_NEAR(pulled(JkrNonHysteretic{}), 5.0 / 9.0, 1e-7);
+  EXPECT_NEAR(pulled(JkrForceMinimum{}), 1, 1e-12);
+}
+
 TEST(Jkr, TheRootSolvesItsQuarticOverTwelveDecades) {
   for (double exponent = -6; exponent <= 6; exponent += 0.01) {
     const double delta = std::pow(10.0, exponent), y = jkr_root(delta);

@@ -1,0 +1,70 @@
+// Where the energy of the contacts goes, exact to rounding for the leapfrog scheme.
+//
+// With half-step velocities v(n-1/2) the kinetic energy at step n is K_n = m/2 v(n-1/2).v(n+1/2), and between two steps
+//
+//   K_n - K_(n-1) = (dt/2) (F_(n-1) + F_n) . v(n-1/2)                                                                   (1)
+//
+// holds exactly. So what a contact takes from its bodies between two steps is minus that sum over its own forces and torques,
+// of the step before and of this one, both with the velocities in between. From this the ledger books, each by its own
+// formula, what is stored (energies as functions of the contact's state), damped, turned into heat by sliding and rolling, and
+// lost when contacts form and break. What is left of (1) is the error of the time stepping itself, a number that falls with
+// the square of the step and is reported as such.
+#pragma once
+#include <Eigen/Core>
+
+#include "libdem/case/case.hpp"
+
+namespace dem {
+
+// J, since the ledger was begun; > 0 is taken from the grains unless said otherwise.
+struct LedgerSums {
+  double normal_damping = 0;
+  double tangential_damping = 0;
+  double sliding = 0;
+  double rolling = 0;           // rolling resistance, viscous and plastic
+  double detachment = 0;        // lost by the forming and breaking of contacts: adhesion hysteresis, and springs that let go
+  double stiffness_change = 0;  // gained (> 0) by tangential springs whose stiffness changed at a given length or force
+  double time_stepping = 0;     // lost (> 0) or made (< 0) by the finite time step
+
+  LedgerSums& operator+=(const LedgerSums& more) {
+    normal_damping += more.normal_damping;
+    tangential_damping += more.tangential_damping;
+    sliding += more.sliding;
+    rolling += more.rolling;
+    detachment += more.detachment;
+    stiffness_change += more.stiffness_change;
+    time_stepping += more.time_stepping;
+    return *this;
+  }
+};
+
+// J, energies stored in one contact or in all.
+struct StoredEnergy {
+  double normal = 0;      // integral of the elastic normal force; <= 0 for a JKR neck at rest
+  double surface = 0;     // <= 0, the part of `normal` that closed surfaces hold
+  double tangential = 0;  // in the tangential spring
+  double rolling = 0;     // in the rolling spring
+  double total() const { return normal + tangential + rolling; }
+  StoredEnergy& operator+=(const StoredEnergy& more) {
+    normal += more.normal;
+    surface += more.surface;
+    tangential += more.tangential;
+    rolling += more.rolling;
+    return *this;
+  }
+};
+
+// A contact's forces, part by part, and its geometry at the evaluation before: the first half of (1). All zero where there was
+// no contact. Of a wall: velocity of its material point at the contact and its spin.
+struct LastForces {
+  Vec3 normal = Vec3::Zero();                                            // unit
+  double arm_i = 0, arm_j = 0;                                           // m
+  double elastic = 0, damping = 0;                                       // N
+  Vec3 tangential_elastic = Vec3::Zero(), tangential_viscous = Vec3::Zero();  // N on i
+  Vec3 rolling_i = Vec3::Zero(), rolling_j = Vec3::Zero();               // N m
+  Vec3 wall_velocity = Vec3::Zero(), wall_spin = Vec3::Zero();           // m/s, rad/s
+  double normal_energy = 0, surface_energy = 0, tangential_energy = 0, rolling_energy = 0;  // J
+  StoredEnergy energy() const { return {normal_energy, surface_energy, tangential_energy, rolling_energy}; }
+};
+
+}  // namespace dem

@@ -1,0 +1,170 @@
+#include "libdem/simulation/guards.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "libdem/errors.hpp"
+
+namespace dem {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+std::string place(const GuardInput& in, std::size_t i) {
+  const Vec3 mm = 1e3 * in.particles.position[i];
+  return "grain " + std::to_string(in.particles.id[i]) + " at (" + number(mm.x()) + ", " + number(mm.y()) + ", " +
+         number(mm.z()) + ") mm, t = " + number(in.time) + " s";
+}
+
+// One acting contact of a grain, seen from it.
+struct Contact {
+  Vec3 normal;                                  // unit, away from the grain's centre
+  double normal_stiffness, tangential_stiffness;  // N/m
+  double elastic, overlap;                      // N, m
+  std::string with;                             // "grain 17", "wall 'blade'"
+};
+
+template <class F>
+void for_each_contact(const GuardInput& in, std::size_t i, F f) {
+  const Particles& p = in.particles;
+  const PairList& list = in.pairs.list;
+  const bool friction =
+      with_part<TangentialLaws>(in.setup.law.tangential, [](auto part) { return part.has_spring; });
+  const auto tell = [&](const PairConstants<double>& c, double radius, const Vec3& normal, double elastic, double overlap,
+                        auto&& with) {
+    f(Contact{normal, 2 * c.effective_modulus * radius, friction ? 8 * c.effective_shear * radius : 0, elastic, overlap,
+              with()});
+  };
+  const auto pair = [&](std::uint32_t s, std::uint32_t other) {
+    if (!in.pairs.acts[s]) return;
+    const Vec3 branch = p.position[other] - p.position[i];
+    const double distance = branch.norm();
+    tell(in.materials.pair[in.pairs.material_pair[s]], in.pairs.memory[s].contact_radius, branch / distance,
+         in.pairs.result[s].elastic, p.radius[i] + p.radius[other] - distance,
+         [&] { return "grain " + std::to_string(p.id[other]); });
+  };
+  for (std::uint32_t s = list.begin[i]; s < list.begin[i + 1]; ++s) pair(s, list.second[s]);
+  for (std::uint32_t k = list.incoming_begin[i]; k < list.incoming_begin[i + 1]; ++k)
+    pair(list.incoming[k], list.first[list.incoming[k]]);
+  for (std::uint32_t k = in.walls.of_particle_begin[i]; k < in.walls.of_particle_begin[i + 1]; ++k) {
+    const WallCandidate& c = in.walls.candidate[in.walls.of_particle[k]];
+    for (std::size_t q = 0; q < c.size; ++q)
+      if (c.contact[q].acts)
+        tell(c.constants, c.contact[q].memory.contact_radius, c.contact[q].touch.normal, c.contact[q].elastic,
+             p.radius[i] - c.contact[q].touch.distance, [&] { return "wall '" + in.setup.walls[c.wall].name + "'"; });
+  }
+}
+
+// "its largest force, 12 N at an overlap of 1.5 um, is with wall 'blade'"
+std::string largest_contact(const GuardInput& in, std::size_t i) {
+  double largest = -std::numeric_limits<double>::infinity();
+  std::string text = "it touches nothing";
+  for_each_contact(in, i, [&](const Contact& c) {
+    if (!(c.elastic > largest)) return;
+    largest = c.elastic;
+    text = "its largest force, " + number(c.elastic) + " N at an overlap of " + number(1e6 * c.overlap) + " um, is with " + c.with;
+  });
+  return text;
+}
+
+// Stiffness over mass and inertia, 1/s^2, of the grain's translation and (scaled) rotation between its contacts.
+Matrix6 dynamic_matrix(const GuardInput& in, std::size_t i) {
+  Matrix6 sum = Matrix6::Zero();
+  const double m = 1 / std::sqrt(in.mass[i]), turn = in.particles.radius[i] / std::sqrt(in.inertia[i]);
+  for_each_contact(in, i, [&](const Contact& c) {
+    // Velocity of the contact point: v + omega x (R n), in scaled coordinates.
+    Eigen::Matrix<double, 3, 6> motion;
+    Eigen::Matrix3d lever;
+    lever << 0, c.normal.z(), -c.normal.y(), -c.normal.z(), 0, c.normal.x(), c.normal.y(), -c.normal.x(), 0;
+    motion << m * Eigen::Matrix3d::Identity(), turn * lever;
+    const Eigen::Matrix3d along = c.normal * c.normal.transpose();
+    const Eigen::Matrix3d stiffness =
+        c.normal_stiffness * along + c.tangential_stiffness * (Eigen::Matrix3d::Identity() - along);
+    sum += motion.transpose() * stiffness * motion;
+  });
+  return sum;
+}
+
+}  // namespace
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+void check_motion(const GuardInput& in) {
+  const Particles& p = in.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!p.position[i].allFinite() || !p.velocity[i].allFinite() || !p.angular_velocity[i].allFinite())
+      throw PhysicsError("the motion of " + place(in, i) + " is no longer a number; " + largest_contact(in, i) +
+                         "; likely cause: a time step above the stable limit");
+    if ((p.position[i].array() < in.setup.low.array()).any() || (p.position[i].array() > in.setup.high.array()).any())
+      throw PhysicsError(place(in, i) + " has left the vessel with speed " + number(p.velocity[i].norm()) + " m/s; " +
+                         largest_contact(in, i) +
+                         "; likely cause: a time step above the stable limit or a gap that pinched it through a wall");
+  }
+}
+
+double stable_step(const GuardInput& in, std::size_t i) {
+  const double largest = Eigen::SelfAdjointEigenSolver<Matrix6>(dynamic_matrix(in, i), Eigen::EigenvaluesOnly).eigenvalues()[5];
+  return largest > 0 ? 2 / std::sqrt(largest) : std::numeric_limits<double>::infinity();
+}
+
+void check_stable_step(const GuardInput& in) {
+  // The trace bounds the largest eigenvalue; few grains come near.
+  const Particles& p = in.particles;
+  const bool friction =
+      with_part<TangentialLaws>(in.setup.law.tangential, [](auto part) { return part.has_spring; });
+  std::vector<double> trace(p.size(), 0.0);
+  const auto add = [&](std::size_t i, const PairConstants<double>& c, double radius) {
+    const double tangential = friction ? 16 * c.effective_shear * radius : 0;
+    trace[i] += (2 * c.effective_modulus * radius + tangential) / in.mass[i] +
+                tangential * p.radius[i] * p.radius[i] / in.inertia[i];
+  };
+  for (std::size_t s = 0; s < in.pairs.list.size(); ++s) {
+    if (!in.pairs.acts[s]) continue;
+    const PairConstants<double>& c = in.materials.pair[in.pairs.material_pair[s]];
+    add(in.pairs.list.first[s], c, in.pairs.memory[s].contact_radius);
+    add(in.pairs.list.second[s], c, in.pairs.memory[s].contact_radius);
+  }
+  for (const WallCandidate& c : in.walls.candidate)
+    for (std::size_t k = 0; k < c.size; ++k)
+      if (c.contact[k].acts) add(c.particle, c.constants, c.contact[k].memory.contact_radius);
+  const double dt = in.setup.step;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!(trace[i] * dt * dt > 4)) continue;
+    const double limit = stable_step(in, i);
+    if (dt > limit)
+      throw PhysicsError("the time step of " + number(dt) + " s is above the stable limit of " + number(limit) + " s of " +
+                         place(in, i) + "; " + largest_contact(in, i) + "; take a step of a third of that limit");
+  }
+}
+
+void stop_for_overlap(const GuardInput& in) {
+  const Particles& p = in.particles;
+  const auto text = [](double overlap, double force) {
+    return "runaway overlap of " + number(overlap * 1e6) + " um at " + number(force) + " N between ";
+  };
+  for (std::size_t s = 0; s < in.pairs.list.size(); ++s) {
+    const std::uint32_t i = in.pairs.list.first[s], j = in.pairs.list.second[s];
+    const double overlap = p.radius[i] + p.radius[j] - (p.position[i] - p.position[j]).norm();
+    if (in.pairs.acts[s] && !(overlap < runaway_overlap * std::min(p.radius[i], p.radius[j])))
+      throw PhysicsError(text(overlap, in.pairs.result[s].elastic) + "grain " + std::to_string(p.id[j]) + " and " +
+                         place(in, i) + "; likely cause: a time step above the stable limit");
+  }
+  for (const WallCandidate& c : in.walls.candidate)
+    for (std::size_t k = 0; k < c.size; ++k) {
+      const double overlap = p.radius[c.particle] - c.contact[k].touch.distance;
+      if (c.contact[k].acts && !(overlap < runaway_overlap * p.radius[c.particle]))
+        throw PhysicsError(text(overlap, c.contact[k].elastic) + "wall '" + in.setup.walls[c.wall].name + "' and " +
+                           place(in, c.particle) +
+                           "; likely cause: a time step above the stable limit, or a gap too narrow for the grain");
+    }
+  throw PhysicsError("runaway overlap at t = " + number(in.time) + " s");
+}
+
+}  // namespace dem
