@@ -9,6 +9,7 @@
 
 #include "apps/jamscope/toml_reader.hpp"
 #include "libdem/case/check_case.hpp"
+#include "libdem/contact/laws.hpp"
 #include "libdem/errors.hpp"
 
 namespace jamscope {
@@ -72,6 +73,7 @@ Given read_interactions(Section interactions, Document& document, dem::Case& c) 
     section.number("friction", i.friction);
     section.number("rolling_friction", i.rolling_friction, optional);
     section.quantity("work_of_adhesion", dimension::surface_energy, i.work_of_adhesion, optional);
+    section.number("rolling_damping", i.rolling_damping, optional);
     section.finish();
 
     const std::size_t hyphen = pair.find('-');
@@ -94,6 +96,34 @@ Given read_interactions(Section interactions, Document& document, dem::Case& c) 
   }
   interactions.finish();
   return given;
+}
+
+// Names of parts are checked here, so that the message can point at them.
+void read_contact(Section contact, Document& document, dem::Case& c) {
+  dem::ContactModel& m = c.contact;
+  const auto part = [&]<class Table>(const char* key, std::type_identity<Table>, std::string& out) {
+    std::vector<std::pair<std::string, std::string>> words;
+    for (const std::string& name : dem::part_names<Table>()) words.emplace_back(name, name);
+    contact.choice(key, words, out, optional);
+  };
+  part("normal", std::type_identity<dem::NormalLaws>{}, m.normal);
+  part("damping", std::type_identity<dem::DampingLaws>{}, m.damping);
+  part("friction_limit", std::type_identity<dem::FrictionLimits>{}, m.friction_limit);
+  part("tangential", std::type_identity<dem::TangentialLaws>{}, m.tangential);
+  part("rolling", std::type_identity<dem::RollingLaws>{}, m.rolling);
+  contact.choice("wall_curvature", {{"flat", false}, {"true", true}}, m.wall_curvature, optional);
+  bool surface = false;
+  contact.choice("adhesion", {{"work", false}, {"surface", true}}, surface, optional);
+  contact.finish();
+  try {
+    dem::choose_law(m);
+  } catch (const dem::CaseError& error) {
+    document.problem("contact.friction_limit", error.what());
+  }
+  // A surface energy gamma of both bodies makes the work W = 2 gamma of their pair.
+  if (surface)
+    for (auto& row : c.interactions)
+      for (dem::Interaction& i : row) i.work_of_adhesion *= 2;
 }
 
 void read_vessel(Section vessel, dem::Vessel& v) {
@@ -172,6 +202,7 @@ void read_output(Section output, dem::Output& o) {
   output.quantity("frame_interval", dimension::time, o.frame_interval);
   output.quantity("series_interval", dimension::time, o.series_interval);
   output.quantity("checkpoint_interval", dimension::time, o.checkpoint_interval);
+  output.truth("energy_ledger", o.energy_ledger, optional);
   output.finish();
 }
 
@@ -254,6 +285,7 @@ CaseFile read_case_text(std::string_view text, const std::string& path, const st
   read_about(root.section("case", optional), path, c);
   read_materials(root.section("material"), document, c);
   const Given given = read_interactions(root.section("interaction"), document, c);
+  read_contact(root.section("contact", optional), document, c);
   read_vessel(root.section("vessel"), c.vessel);
   read_blade(root.section("blade"), path, document, c.blade);
   read_motion(root.section("motion"), c.motion);

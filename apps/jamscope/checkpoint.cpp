@@ -9,6 +9,7 @@
 #include "apps/jamscope/sha256.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/snapshot/hdf5.hpp"
+#include "libjam/snapshot/schema.hpp"
 
 namespace jamscope {
 namespace {
@@ -156,49 +157,32 @@ dem::State read_state(const jam::h5::File& f) {
   return s;
 }
 
+// Where a column of the series stands that is not in the snapshot file yet.
+std::string pending_path(const jam::schema::Item& item, std::size_t wall) {
+  return "/pending" + jam::schema::path_of(item, std::to_string(wall)).substr(std::strlen("/series"));
+}
+
 void write_series(jam::h5::File& f, const jam::Series& s) {
-  f.write("/pending/time", s.time, "s", "end of the window");
-  f.write("/pending/step", s.step, "1", "end of the window");
-  f.write("/pending/largest_compressive_force", s.largest_compressive_force, "N", "over grains and steps");
-  f.write("/pending/jammed_count", s.jammed_count, "1", "largest number above the threshold");
-  f.write("/pending/kinetic_energy", s.kinetic_energy, "J", "at the end of the window");
-  f.write("/pending/largest_overlap", s.largest_overlap, "1", "over radius");
+  const auto write = [&](const jam::schema::Item& item, const auto& values, std::size_t wall) {
+    f.write(pending_path(item, wall), values, std::string(item.unit), std::string(item.doc));
+  };
+  jam::schema::visit_series(s, [&](const auto& item, const auto& values) { write(item, values, 0); });
   f.set_attribute("/pending", "walls", std::uint32_t(s.walls.size()));
-  for (std::size_t w = 0; w < s.walls.size(); ++w) {
-    const std::string group = "/pending/wall" + std::to_string(w) + "/";
-    const jam::Series::WallSeries& x = s.walls[w];
-    f.write(group + "force", x.force, "N", "mean");
-    f.write(group + "torque", x.torque, "N m", "mean");
-    f.write(group + "force_min", x.force_min, "N", "least");
-    f.write(group + "force_max", x.force_max, "N", "most");
-    f.write(group + "torque_min", x.torque_min, "N m", "least");
-    f.write(group + "torque_max", x.torque_max, "N m", "most");
-    f.write(group + "power", x.power, "W", "mean");
-  }
+  for (std::size_t w = 0; w < s.walls.size(); ++w)
+    jam::schema::visit_wall_series(s.walls[w], [&](const auto& item, const auto& values) { write(item, values, w); });
 }
 
 jam::Series read_series(const jam::h5::File& f) {
   jam::Series s;
-  s.time = f.read<double>("/pending/time");
-  s.step = f.read<std::uint64_t>("/pending/step");
-  s.largest_compressive_force = f.read<float>("/pending/largest_compressive_force");
-  s.jammed_count = f.read<std::uint32_t>("/pending/jammed_count");
-  s.kinetic_energy = f.read<double>("/pending/kinetic_energy");
-  s.largest_overlap = f.read<double>("/pending/largest_overlap");
+  const auto read = [&]<class V>(const jam::schema::Item& item, std::vector<V>& values, std::size_t wall) {
+    values = f.read<V>(pending_path(item, wall));
+  };
+  jam::schema::visit_series(s, [&](const auto& item, auto& values) { read(item, values, 0); });
   const auto walls = f.attribute<std::uint32_t>("/pending", "walls");
   if (walls > 255) f.fail("/pending", "claims " + std::to_string(walls) + " walls, expected at most 255");
-  for (std::uint32_t w = 0; w < walls; ++w) {
-    const std::string group = "/pending/wall" + std::to_string(w) + "/";
-    jam::Series::WallSeries x;
-    x.force = f.read<Vec3>(group + "force");
-    x.torque = f.read<Vec3>(group + "torque");
-    x.force_min = f.read<Vec3>(group + "force_min");
-    x.force_max = f.read<Vec3>(group + "force_max");
-    x.torque_min = f.read<Vec3>(group + "torque_min");
-    x.torque_max = f.read<Vec3>(group + "torque_max");
-    x.power = f.read<double>(group + "power");
-    s.walls.push_back(std::move(x));
-  }
+  s.walls.resize(walls);
+  for (std::size_t w = 0; w < walls; ++w)
+    jam::schema::visit_wall_series(s.walls[w], [&](const auto& item, auto& values) { read(item, values, w); });
   return s;
 }
 

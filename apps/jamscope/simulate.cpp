@@ -20,6 +20,7 @@
 #include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/snapshot/reader.hpp"
+#include "libjam/snapshot/schema.hpp"
 #include "libjam/snapshot/writer.hpp"
 #include "libjam/snapshot/xdmf.hpp"
 
@@ -119,7 +120,7 @@ class Run {
     for (std::size_t k = 0; k < stored.frames; ++k) pipeline_.add(stored.read(k));
     series_ = stored.series;
     pending_ = std::move(checkpoint.pending);
-    append(series_, pending_);
+    jam::schema::append(series_, pending_);
     simulation_.emplace(rheometer_.setup, std::move(checkpoint.state));
     console_.note(fmt::format("resumed at t = {:.6g} s, step {}, with {} frames", simulation_->time(), simulation_->step(), stored.frames));
   }

@@ -44,6 +44,31 @@ std::uint8_t contact_flags(bool sliding, double overlap) {
 
 jam::Vec3f single(const dem::Vec3& v) { return v.cast<float>(); }
 
+std::array<double, 12> by_label(const dem::Window::Load& load, dem::Vec3 dem::WallLoad::*member) {
+  std::array<double, 12> row{};
+  for (std::size_t l = 0; l < dem::facet_labels; ++l)
+    for (std::size_t k = 0; k < 3; ++k) row[3 * l + k] = (load.of_label[l].*member)[Eigen::Index(k)];
+  return row;
+}
+
+void append(jam::Series::Energy& e, const dem::Ledger& l) {
+  e.kinetic.push_back(l.kinetic);
+  e.rotational.push_back(l.rotational);
+  e.gravitational.push_back(l.gravitational);
+  e.elastic.push_back(l.stored.normal - l.stored.surface);
+  e.adhesive.push_back(l.stored.surface);
+  e.tangential.push_back(l.stored.tangential);
+  e.rolling.push_back(l.stored.rolling);
+  e.normal_damping.push_back(l.spent.normal_damping);
+  e.tangential_damping.push_back(l.spent.tangential_damping);
+  e.sliding.push_back(l.spent.sliding);
+  e.rolling_resistance.push_back(l.spent.rolling);
+  e.detachment.push_back(l.spent.detachment);
+  e.stiffness_change.push_back(l.spent.stiffness_change);
+  e.time_stepping.push_back(l.spent.time_stepping);
+  e.residual.push_back(l.residual());
+}
+
 }  // namespace
 
 jam::RunInfo run_info(const CaseFile& file, const dem::Rheometer& rheometer, const std::vector<std::string>& argv) {
@@ -138,29 +163,13 @@ void append(jam::Series& series, const dem::Window& window) {
     wall.torque_min.push_back(load.torque_min);
     wall.torque_max.push_back(load.torque_max);
     wall.power.push_back(load.power);
+    if (window.is_mesh[w]) {
+      wall.label_force.push_back(by_label(load, &dem::WallLoad::force));
+      wall.label_torque.push_back(by_label(load, &dem::WallLoad::torque));
+    }
+    if (window.ledger) wall.work.push_back(window.ledger->wall_work[w]);
   }
-}
-
-void append(jam::Series& series, const jam::Series& more) {
-  const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-  add(series.time, more.time);
-  add(series.step, more.step);
-  add(series.largest_compressive_force, more.largest_compressive_force);
-  add(series.jammed_count, more.jammed_count);
-  add(series.kinetic_energy, more.kinetic_energy);
-  add(series.largest_overlap, more.largest_overlap);
-  if (series.walls.size() < more.walls.size()) series.walls.resize(more.walls.size());
-  for (std::size_t w = 0; w < more.walls.size(); ++w) {
-    jam::Series::WallSeries& to = series.walls[w];
-    const jam::Series::WallSeries& from = more.walls[w];
-    add(to.force, from.force);
-    add(to.torque, from.torque);
-    add(to.force_min, from.force_min);
-    add(to.force_max, from.force_max);
-    add(to.torque_min, from.torque_min);
-    add(to.torque_max, from.torque_max);
-    add(to.power, from.power);
-  }
+  if (window.ledger) append(series.energy, *window.ledger);
 }
 
 }  // namespace jamscope

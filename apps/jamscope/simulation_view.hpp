@@ -15,7 +15,5 @@ jam::Snapshot snapshot(const dem::View& view);
 
 // Adds one row.
 void append(jam::Series& series, const dem::Window& window);
-// Adds all rows of `more`.
-void append(jam::Series& series, const jam::Series& more);
 
 }  // namespace jamscope

@@ -293,6 +293,15 @@ bool Section::whole_number(std::string_view key, std::uint64_t& out, Need need) 
   return true;
 }
 
+bool Section::truth(std::string_view key, bool& out, Need need) {
+  const toml::node* node = find(key, need);
+  if (!node) return false;
+  const auto* value = node->as_boolean();
+  if (!value) return wrong_type(key, "true or false", *node);
+  out = value->get();
+  return true;
+}
+
 bool Section::text(std::string_view key, std::string& out, Need need) {
   const toml::node* node = find(key, need);
   if (!node) return false;

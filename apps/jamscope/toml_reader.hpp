@@ -91,6 +91,7 @@ class Section {
   bool number(std::string_view key, double& out, Need need = Need::required);
   bool numbers(std::string_view key, std::vector<double>& out, Need need = Need::required);
   bool whole_number(std::string_view key, std::uint64_t& out, Need need = Need::required);
+  bool truth(std::string_view key, bool& out, Need need = Need::required);
   bool text(std::string_view key, std::string& out, Need need = Need::required);
   // One of a few words.
   template <class Value>

@@ -90,6 +90,7 @@ struct Output {
   double frame_interval = 0;       // s
   double series_interval = 0;      // s
   double checkpoint_interval = 0;  // s of simulated time
+  bool energy_ledger = false;      // book where the energy goes
 };
 
 struct Case {

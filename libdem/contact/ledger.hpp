@@ -7,8 +7,8 @@
 // holds exactly. So what a contact takes from its bodies between two steps is minus that sum over its own forces and torques,
 // of the step before and of this one, both with the velocities in between. From this the ledger books, each by its own
 // formula, what is stored (energies as functions of the contact's state), damped, turned into heat by sliding and rolling, and
-// lost when contacts form and break. What is left of (1) is the error of the time stepping itself, a number that falls with
-// the square of the step and is reported as such.
+// lost when contacts form and break. What is left of (1) is the error of the time stepping itself: of the second order in the
+// step where forces are smooth, of the first where contacts form, break, begin or cease to slide. It is reported as such.
 #pragma once
 #include <Eigen/Core>
 

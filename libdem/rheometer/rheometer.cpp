@@ -26,6 +26,8 @@ Rheometer make_rheometer(const Case& c) {
   Setup& setup = rheometer.setup;
   setup.materials = c.materials;
   setup.interactions = c.interactions;
+  setup.law = choose_law(c.contact);
+  setup.keep_ledger = c.output.energy_ledger;
   setup.gravity = c.gravity;
   setup.step = c.step;
   const std::size_t vessel = material_index(c, c.vessel.material), blade = material_index(c, c.blade.material);

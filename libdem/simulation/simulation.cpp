@@ -549,6 +549,8 @@ Window Simulation::take_window() {
     load.torque /= steps;
     load.power /= steps;
   }
+  for (const Wall& wall : e.setup.walls) w.is_mesh.push_back(std::holds_alternative<MeshWall>(wall.shape));
+  if (e.setup.keep_ledger) w.ledger = e.ledger();
   e.begin_window();
   return w;
 }

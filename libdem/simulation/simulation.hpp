@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -134,6 +135,8 @@ struct Window {
     std::array<WallLoad, facet_labels> of_label;  // mean, by FacetLabel of the triangle; meshes only
   };
   std::vector<Load> walls;
+  std::vector<std::uint8_t> is_mesh;  // [walls] 1 where `of_label` means something
+  std::optional<Ledger> ledger;       // of last_step, of a run that keeps one
 };
 
 class Simulation {

@@ -63,6 +63,22 @@ Series rows_of(const Series& series, std::size_t first, std::size_t last) {
   return part;
 }
 
+void append(Series& series, const Series& more) {
+  const auto add = [](auto& to, const auto& from, auto visit) {
+    std::vector<void*> columns;
+    visit(to, [&](const Item&, auto& values) { columns.push_back(&values); });
+    std::size_t next = 0;
+    visit(from, [&]<class C>(const Item&, const C& values) {
+      C& target = *static_cast<C*>(columns[next++]);
+      target.insert(target.end(), values.begin(), values.end());
+    });
+  };
+  if (series.walls.size() < more.walls.size()) series.walls.resize(more.walls.size());
+  add(series, more, [](auto& s, auto f) { visit_series(s, f); });
+  for (std::size_t w = 0; w < more.walls.size(); ++w)
+    add(series.walls[w], more.walls[w], [](auto& s, auto f) { visit_wall_series(s, f); });
+}
+
 std::uint32_t checksum(const FrameRow& row, const Snapshot& snapshot, bool wall_loads, const Series& new_rows,
                        const std::vector<Wall>& walls) {
   Crc32c crc;

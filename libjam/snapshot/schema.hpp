@@ -12,7 +12,7 @@
 namespace jam::schema {
 
 inline constexpr std::string_view format = "jamscope-snapshots";
-inline constexpr std::array<std::uint32_t, 2> version{1, 0};  // a larger second number only adds optional items
+inline constexpr std::array<std::uint32_t, 2> version{1, 1};  // a larger second number only adds optional items
 
 // What the rows of an item are.
 enum class Axis : std::uint8_t {
@@ -143,6 +143,21 @@ inline constexpr Item table[] = {
     {"/series/jammed_count", T::u4, 1, series, optional, "1", "most particles above the threshold in one step"},
     {"/series/kinetic_energy", T::f8, 1, series, optional, "J", "at the end of the window"},
     {"/series/largest_overlap", T::f8, 1, series, optional, "1", "overlap over particle radius, over the window"},
+    {"/series/energy/kinetic", T::f8, 1, series, optional, "J", "kinetic energy of translation, of the leapfrog scheme"},
+    {"/series/energy/rotational", T::f8, 1, series, optional, "J", "kinetic energy of rotation"},
+    {"/series/energy/gravitational", T::f8, 1, series, optional, "J", "-m g.x"},
+    {"/series/energy/elastic", T::f8, 1, series, optional, "J", "strain energy of the normal contacts"},
+    {"/series/energy/adhesive", T::f8, 1, series, optional, "J", "energy of closed surfaces, <= 0"},
+    {"/series/energy/tangential", T::f8, 1, series, optional, "J", "in tangential springs"},
+    {"/series/energy/rolling", T::f8, 1, series, optional, "J", "in rolling springs"},
+    {"/series/energy/normal_damping", T::f8, 1, series, optional, "J", "taken by normal damping since the start"},
+    {"/series/energy/tangential_damping", T::f8, 1, series, optional, "J", "taken by tangential damping since the start"},
+    {"/series/energy/sliding", T::f8, 1, series, optional, "J", "taken by sliding since the start"},
+    {"/series/energy/rolling_resistance", T::f8, 1, series, optional, "J", "taken by rolling resistance since the start"},
+    {"/series/energy/detachment", T::f8, 1, series, optional, "J", "lost by forming and breaking contacts since the start"},
+    {"/series/energy/stiffness_change", T::f8, 1, series, optional, "J", "gained by tangential springs from their changing stiffness since the start"},
+    {"/series/energy/time_stepping", T::f8, 1, series, optional, "J", "lost by the finite time step since the start"},
+    {"/series/energy/residual", T::f8, 1, series, optional, "J", "what the ledger does not explain"},
     {"/series/walls/*/force", T::f8, 3, series, optional, "N", "on the wall, mean over the window"},
     {"/series/walls/*/torque", T::f8, 3, series, optional, "N m", "on the wall about its pose position, mean"},
     {"/series/walls/*/force_min", T::f8, 3, series, optional, "N", "smallest per component"},
@@ -150,6 +165,9 @@ inline constexpr Item table[] = {
     {"/series/walls/*/torque_min", T::f8, 3, series, optional, "N m", "smallest per component"},
     {"/series/walls/*/torque_max", T::f8, 3, series, optional, "N m", "largest per component"},
     {"/series/walls/*/power", T::f8, 1, series, optional, "W", "mean power that the wall puts into the grains"},
+    {"/series/walls/*/work", T::f8, 1, series, optional, "J", "that the wall put into the grains since the start"},
+    {"/series/walls/*/label_force", T::f8, 12, series, optional, "N", "mean force on triangles of label 0, 1, 2, 3"},
+    {"/series/walls/*/label_torque", T::f8, 12, series, optional, "N m", "mean torque, likewise"},
 };
 
 constexpr const Item& find(std::string_view path) {
@@ -268,6 +286,21 @@ void visit_series(S& s, F&& f) {
   f(column<std::uint32_t>("/series/jammed_count"), s.jammed_count);
   f(column<double>("/series/kinetic_energy"), s.kinetic_energy);
   f(column<double>("/series/largest_overlap"), s.largest_overlap);
+  f(column<double>("/series/energy/kinetic"), s.energy.kinetic);
+  f(column<double>("/series/energy/rotational"), s.energy.rotational);
+  f(column<double>("/series/energy/gravitational"), s.energy.gravitational);
+  f(column<double>("/series/energy/elastic"), s.energy.elastic);
+  f(column<double>("/series/energy/adhesive"), s.energy.adhesive);
+  f(column<double>("/series/energy/tangential"), s.energy.tangential);
+  f(column<double>("/series/energy/rolling"), s.energy.rolling);
+  f(column<double>("/series/energy/normal_damping"), s.energy.normal_damping);
+  f(column<double>("/series/energy/tangential_damping"), s.energy.tangential_damping);
+  f(column<double>("/series/energy/sliding"), s.energy.sliding);
+  f(column<double>("/series/energy/rolling_resistance"), s.energy.rolling_resistance);
+  f(column<double>("/series/energy/detachment"), s.energy.detachment);
+  f(column<double>("/series/energy/stiffness_change"), s.energy.stiffness_change);
+  f(column<double>("/series/energy/time_stepping"), s.energy.time_stepping);
+  f(column<double>("/series/energy/residual"), s.energy.residual);
 }
 
 template <class W, class F>
@@ -279,6 +312,9 @@ void visit_wall_series(W& w, F&& f) {
   f(column<Vec3>("/series/walls/*/torque_min"), w.torque_min);
   f(column<Vec3>("/series/walls/*/torque_max"), w.torque_max);
   f(column<double>("/series/walls/*/power"), w.power);
+  f(column<double>("/series/walls/*/work"), w.work);
+  f(column<std::array<double, 12>>("/series/walls/*/label_force"), w.label_force);
+  f(column<std::array<double, 12>>("/series/walls/*/label_torque"), w.label_torque);
 }
 
 // f(path in the file, item, member) for every growing column of a series; walls beyond s.walls are skipped.
@@ -292,6 +328,9 @@ void visit_all_series(S& s, const std::vector<Wall>& walls, F&& f) {
 
 // Rows [first, last) of a series.
 Series rows_of(const Series& series, std::size_t first, std::size_t last);
+
+// Appends the rows of `more`, which has the same columns.
+void append(Series& series, const Series& more);
 
 // CRC-32C (Castagnoli) of what a frame adds to the file: the row of /frames, the walls' states in order of their ids,
 // the rows of /particles, /contacts/pp, /contacts/pw, and the new rows of /series; each item in the order of the table,

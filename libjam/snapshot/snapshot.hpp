@@ -154,10 +154,25 @@ struct Series {
   std::vector<std::uint32_t> jammed_count;       // [S] largest number of particles above the threshold in one step
   std::vector<double> kinetic_energy;            // [S] J at the end of the window
   std::vector<double> largest_overlap;           // [S] overlap over particle radius, maximum over the window
+  // [S] J at the end of the window, or absent: where the energy is, then where it went since the start of the run.
+  struct Energy {
+    std::vector<double> kinetic, rotational;  // of the leapfrog scheme
+    std::vector<double> gravitational;
+    std::vector<double> elastic, adhesive;    // normal contacts: strain energy; energy of closed surfaces, <= 0
+    std::vector<double> tangential, rolling;  // in springs
+    std::vector<double> normal_damping, tangential_damping, sliding, rolling_resistance;
+    std::vector<double> detachment;        // lost by forming and breaking contacts
+    std::vector<double> stiffness_change;  // gained by tangential springs from their changing stiffness
+    std::vector<double> time_stepping;     // lost (> 0) or made (< 0) by the finite time step
+    std::vector<double> residual;          // what is left unexplained
+  } energy;
   struct WallSeries {
     std::vector<Vec3> force, torque;  // [S] mean over the window's steps, N and N m
     std::vector<Vec3> force_min, force_max, torque_min, torque_max;  // [S] per component, over the window's steps
     std::vector<double> power;  // [S] W, mean of the power the wall puts INTO the grains
+    std::vector<double> work;   // [S] J, put into the grains since the start, or absent
+    // [S] mean over the window, x, y, z on triangles of each label (0 face, 1 edge, 2 tip, 3 hub); meshes only, or absent
+    std::vector<std::array<double, 12>> label_force, label_torque;
   };
   std::vector<WallSeries> walls;  // one per RunInfo::walls
   std::size_t size() const { return time.size(); }

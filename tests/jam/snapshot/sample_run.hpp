@@ -215,18 +215,7 @@ inline std::string difference(const Series& a, const Series& b, const RunInfo& r
 inline Series joined(std::size_t frames) {
   Series all = series(1);
   for (std::size_t k = 2; k < frames; ++k) {
-    const Series more = series(k);
-    const auto append = [&](auto visit) {
-      std::vector<void*> to;
-      visit(all, [&](const schema::Item&, auto& values) { to.push_back(&values); });
-      std::size_t at = 0;
-      visit(more, [&]<class C>(const schema::Item&, const C& values) {
-        C& target = *static_cast<C*>(to[at++]);
-        target.insert(target.end(), values.begin(), values.end());
-      });
-    };
-    append([](auto& s, auto f) { schema::visit_series(s, f); });
-    for (std::size_t w = 0; w < 3; ++w) append([w](auto& s, auto f) { schema::visit_wall_series(s.walls[w], f); });
+    schema::append(all, series(k));
   }
   return frames < 2 ? Series{} : all;
 }
