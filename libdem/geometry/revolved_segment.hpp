@@ -2,8 +2,8 @@
 //
 // A sphere's centre and its nearest point of such a surface lie in one half plane through the axis, where the distance
 // to a segment has exactly one local minimum. In it the touch is on the face where the foot of the perpendicular lies
-// within the segment, else on the rim that one of its ends sweeps; it moves continuously from one to the other. (A sphere
-// larger than a hollow touches it all round when its centre is on the axis: one of these touches is given.)
+// within the segment, else on the rim that one of its ends sweeps; it moves continuously from one to the other. (A
+// sphere larger than a hollow touches it all round when its centre is on the axis: one of these touches is given.)
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,11 +16,11 @@ namespace dem {
 // The part of a revolved surface that was touched.
 enum class RevolvedPart : std::uint8_t { face = 0, low_rim = 1, high_rim = 2 };
 
-// The profile is (radius + s direction_r, s direction_z), low <= s <= high, with (direction_r, direction_z) a unit vector
-// in the half plane (r, z) of the axis. Its front is on the left of the direction: (-direction_z, direction_r). An end at
-// infinity has no rim. Without any rim the surface bounds the solid behind it, and distances from behind are negative. A
-// surface with a rim is a thin sheet that may be touched from either side: if its back did not count, a grain that rolls
-// over the rim would lose its touch on the way round.
+// The profile is (radius + s direction_r, s direction_z), low <= s <= high, with (direction_r, direction_z) a unit
+// vector in the half plane (r, z) of the axis. Its front is on the left of the direction: (-direction_z, direction_r).
+// An end at infinity has no rim. Without any rim the surface bounds the solid behind it, and distances from behind are
+// negative. A surface with a rim is a thin sheet that may be touched from either side: if its back did not count, a
+// grain that rolls over the rim would lose its touch on the way round.
 struct RevolvedSegment {
   double radius, direction_r, direction_z, low, high;
 
@@ -57,8 +57,8 @@ inline RevolvedTouch nearest_on(const RevolvedSegment& segment, double front, do
   return {distance, to_r / distance, to_z / distance, touch_radius, rim};
 }
 
-// 1/m, curvature of the surface around the axis, > 0 where it is hollow towards the sphere: the normal meets the axis at
-// the radius of curvature (Meusnier). The curvature along the segment is 0; rims count as flat.
+// 1/m, curvature of the surface around the axis, > 0 where it is hollow towards the sphere: the normal meets the axis
+// at the radius of curvature (Meusnier). The curvature along the segment is 0; rims count as flat.
 inline double curvature_at(const RevolvedTouch& touch) {
   return touch.part == RevolvedPart::face && touch.touch_radius > 0 ? touch.normal_r / touch.touch_radius : 0.0;
 }

@@ -33,7 +33,8 @@ SphereSet::SphereSet(std::vector<Vec3> centres, std::vector<double> radii)
   cell_ = 2 * largest_;
   const auto cells = [&] {
     double product = 1;
-    for (std::size_t k = 0; k < 3; ++k) product *= std::floor((high[Eigen::Index(k)] - low_[Eigen::Index(k)]) / cell_) + 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      product *= std::floor((high[Eigen::Index(k)] - low_[Eigen::Index(k)]) / cell_) + 1;
     return product;
   };
   while (cells() > cells_per_sphere * double(centres_.size()) + 8) cell_ *= 1.25;
@@ -42,7 +43,8 @@ SphereSet::SphereSet(std::vector<Vec3> centres, std::vector<double> radii)
   const auto cell_of = [&](const Vec3& x) {
     std::size_t index = 0;
     for (std::size_t k = 0; k < 3; ++k)
-      index = index * cells_[k] + std::min(std::size_t((x[Eigen::Index(k)] - low_[Eigen::Index(k)]) / cell_), cells_[k] - 1);
+      index = index * cells_[k] +
+              std::min(std::size_t((x[Eigen::Index(k)] - low_[Eigen::Index(k)]) / cell_), cells_[k] - 1);
     return index;
   };
   begin_.assign(cells_[0] * cells_[1] * cells_[2] + 1, 0);
@@ -58,7 +60,8 @@ bool SphereSet::is_within(std::uint32_t sphere, const Vec3& x, double reach) con
   return far >= 0 && (centres_[sphere] - x).squaredNorm() <= far * far;
 }
 
-// Goes through the spheres whose cells meet the cube of half edge reach + largest radius about x until `stop_at` says so.
+// Goes through the spheres whose cells meet the cube of half edge reach + largest radius about x until `stop_at` says
+// so.
 template <class F>
 bool SphereSet::visit_cells(const Vec3& x, double reach, F&& stop_at) const {
   const double far = reach + largest_;

@@ -30,10 +30,10 @@ class SphereSet {
 
   std::vector<Vec3> centres_;
   std::vector<double> radii_;
-  double reach_ = 0, largest_ = 0;       // m; largest radius
-  Vec3 low_;                             // m, corner of the grid
-  double cell_ = 1;                      // m, edge of a cell
-  std::array<std::size_t, 3> cells_{};   // per direction
+  double reach_ = 0, largest_ = 0;              // m; largest radius
+  Vec3 low_;                                    // m, corner of the grid
+  double cell_ = 1;                             // m, edge of a cell
+  std::array<std::size_t, 3> cells_{};          // per direction
   std::vector<std::uint32_t> begin_, of_cell_;  // compressed rows: the spheres of each cell, ascending
 };
 

@@ -81,7 +81,7 @@ WallPose pose_at(const WallMotion& motion, double time) {
   orient(pose, turned(motion.orientation, motion.angular_velocity, time));
   if (!motion.pivot.isZero(0)) {
     const Vec3 to_pivot = pose.rotation * motion.pivot;
-    pose.position += motion.pivot - to_pivot;
+    pose.position += motion.orientation * motion.pivot - to_pivot;
     pose.velocity -= motion.angular_velocity.cross(to_pivot);
   }
   return pose;

@@ -13,8 +13,8 @@ namespace dem {
 struct WallPose {
   Vec3 position = Vec3::Zero();  // m, of the body frame's origin
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();   // m/s of the origin, rad/s
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();          // of `orientation`
+  Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();  // m/s of the origin, rad/s
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();         // of `orientation`
 };
 
 struct PoseRow {
@@ -46,11 +46,11 @@ class PoseTable {
   std::vector<Leg> legs_;
 };
 
-// Constant velocity and angular velocity from step 0 on, about a pose; or a table. The pivot, a point of the body, moves
-// straight with `velocity` while the body turns about it: position = start + pivot + velocity t - R(t) pivot with
-// R(t) = rotation by angular_velocity t, after `orientation`; at t = 0 that is start + pivot - R(0) pivot.
+// Constant velocity and angular velocity from step 0 on, about a pose; or a table. The pivot, a point of the body,
+// moves straight with `velocity` while the body turns about it: position = start + velocity t + (R(0) - R(t)) pivot
+// with R(t) = rotation by angular_velocity t, after `orientation`.
 struct WallMotion {
-  Vec3 start = Vec3::Zero();                                        // m, of the body frame's origin; see above
+  Vec3 start = Vec3::Zero();                                        // m, of the body frame's origin at t = 0
   Vec3 velocity = Vec3::Zero();                                     // m/s, of the pivot
   Vec3 angular_velocity = Vec3::Zero();                             // rad/s
   Vec3 pivot = Vec3::Zero();                                        // m, body frame

@@ -25,7 +25,9 @@ struct Revolved {
   double front;  // 1 or -1, see nearest_on
 };
 
-double front_of(FreeSide free) { return free == FreeSide::inside ? 1 : -1; }
+double front_of(FreeSide free) {
+  return free == FreeSide::inside ? 1 : -1;
+}
 
 Revolved revolved(const Cylinder& c) {
   return {c.point, c.axis, {c.radius, 0, 1, c.low, c.high}, front_of(c.free)};
@@ -34,10 +36,14 @@ Revolved revolved(const Cone& c) {
   const double widening = c.high_radius - c.low_radius, slant = std::sqrt(widening * widening + c.length * c.length);
   return {c.point, c.axis, {c.low_radius, widening / slant, c.length / slant, 0, slant}, front_of(c.free)};
 }
-Revolved revolved(const Disc& d) { return {d.point, d.normal, {0, 1, 0, d.hole_radius, d.radius}, 1}; }
+Revolved revolved(const Disc& d) {
+  return {d.point, d.normal, {0, 1, 0, d.hole_radius, d.radius}, 1};
+}
 
 template <class Shape>
-concept Revolves = requires(const Shape& shape) { revolved(shape); };
+concept Revolves = requires(const Shape& shape) {
+  revolved(shape);
+};
 
 struct AxialPlace {
   double r, z;
@@ -54,7 +60,8 @@ RevolvedTouch nearest_on(const Revolved& surface, const AxialPlace& place) {
   return nearest_on(surface.segment, surface.front, place.r, place.z);
 }
 
-// Largest distance of the surface from x: on one of the rims, as the distance is convex along the segment and around it.
+// Largest distance of the surface from x: on one of the rims, as the distance is convex along the segment and around
+// it.
 double farthest(const Revolved& surface, const Vec3& x) {
   if (std::isinf(surface.segment.low) || std::isinf(surface.segment.high)) return infinity;
   const AxialPlace place = place_of(surface, x);
@@ -85,7 +92,12 @@ void visit_touches(const Shape& shape, const Vec3& centre, double reach, std::sp
   const MeshFeature kind = touch.part == RevolvedPart::face ? MeshFeature::face
                            : touch.touch_radius > 0         ? MeshFeature::edge
                                                             : MeshFeature::vertex;
-  f({std::uint64_t(touch.part), 0, kind, {}, touch.normal_r * outward + touch.normal_z * surface.axis, touch.distance,
+  f({std::uint64_t(touch.part),
+     0,
+     kind,
+     {},
+     touch.normal_r * outward + touch.normal_z * surface.axis,
+     touch.distance,
      {curvature_at(touch), 0}});
 }
 
@@ -151,7 +163,9 @@ double winding_number(const TriangleMesh& mesh, const Vec3& x) {
   return angle / (4 * std::numbers::pi);
 }
 
-bool fills(const Plane& plane, const Vec3& x) { return (x - plane.point).dot(plane.normal) < 0; }
+bool fills(const Plane& plane, const Vec3& x) {
+  return (x - plane.point).dot(plane.normal) < 0;
+}
 template <Revolves Shape>
 bool fills(const Shape& shape, const Vec3& x) {
   const Revolved surface = revolved(shape);
@@ -161,8 +175,12 @@ bool fills(const Shape& shape, const Vec3& x) {
   if (along < s.low || along > s.high) return false;
   return surface.front * (place.r - s.radius_at(along)) > 0;
 }
-bool fills(const Disc&, const Vec3&) { return false; }
-bool fills(const GluedGrains& glued, const Vec3& x) { return glued.spheres->any_within(x, 0); }
+bool fills(const Disc&, const Vec3&) {
+  return false;
+}
+bool fills(const GluedGrains& glued, const Vec3& x) {
+  return glued.spheres->any_within(x, 0);
+}
 bool fills(const MeshWall& mesh, const Vec3& x) {
   return x.norm() <= mesh.reach && winding_number(mesh.finder->mesh(), x) > 0.5;
 }
@@ -208,7 +226,9 @@ double surface_speed(const MeshWall& mesh, const Twist& twist) {
 
 // --- numbers that make no shape ---
 
-[[noreturn]] void fail(const std::string& problem) { throw CaseError(problem); }
+[[noreturn]] void fail(const std::string& problem) {
+  throw CaseError(problem);
+}
 void require_unit(const Vec3& direction, const char* name) {
   if (!(std::abs(direction.norm() - 1) <= unit_length))
     fail(std::string(name) + " of length " + std::to_string(direction.norm()) + ", expected 1");
@@ -294,8 +314,8 @@ double largest_speed(const Wall& wall) {
   if (motion.table) {
     for (std::size_t k = 0; k < motion.table->legs().size(); ++k) {
       const PoseTable::Leg& leg = motion.table->legs()[k];
-      largest = std::max(
-          largest, speed(leg.velocity, leg.angular_velocity, motion.table->rows()[k].orientation, Vec3::Zero()));
+      largest = std::max(largest,
+                         speed(leg.velocity, leg.angular_velocity, motion.table->rows()[k].orientation, Vec3::Zero()));
     }
   } else {
     largest = speed(motion.velocity, motion.angular_velocity, motion.orientation, motion.pivot);

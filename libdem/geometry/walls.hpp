@@ -21,8 +21,8 @@ struct WallTouch {
   Vec3 point;             // m, nearest point of the wall
   Vec3 normal;            // unit, from the sphere's centre to the wall
   double distance;        // m, from the sphere's centre to the wall; < 0 when the centre is inside a solid wall
-  // 1/m, the wall's principal curvatures at `point`, > 0 where it is hollow towards the sphere. Edges, rims, vertices and
-  // meshes count as flat.
+  // 1/m, the wall's principal curvatures at `point`, > 0 where it is hollow towards the sphere. Edges, rims, vertices
+  // and meshes count as flat.
   std::array<double, 2> curvature;
 };
 
@@ -38,8 +38,8 @@ struct Plane {
 // A circular cylinder about an axis. Infinite at both ends (the default) it bounds a solid: distances from inside the
 // material are negative. With an end it is a thin sheet that touches from either side and over its rim, see
 // revolved_segment.hpp; `free` then only says which side inside_material() takes for filled. Features: 0 face, 1 rim at
-// `low`, 2 rim at `high`. Where a rim coincides with that of another wall a sphere on it touches both; rims that jut out
-// should belong to one wall.
+// `low`, 2 rim at `high`. Where a rim coincides with that of another wall a sphere on it touches both; rims that jut
+// out should belong to one wall.
 struct Cylinder {
   Vec3 point = Vec3::Zero();
   Vec3 axis = Vec3::UnitZ();  // unit
@@ -51,8 +51,8 @@ struct Cylinder {
 
 // A frustum of a cone, open at both ends: a thin sheet like a finite cylinder. Features as there.
 struct Cone {
-  Vec3 point = Vec3::Zero();  // centre of the low end
-  Vec3 axis = Vec3::UnitZ();  // unit, from the low to the high end
+  Vec3 point = Vec3::Zero();               // centre of the low end
+  Vec3 axis = Vec3::UnitZ();               // unit, from the low to the high end
   double low_radius = 0, high_radius = 0;  // m; one may be 0
   double length = 0;                       // m, along the axis
   FreeSide free = FreeSide::inside;
@@ -61,8 +61,8 @@ struct Cone {
 // A flat circular sheet, with a round hole if hole_radius > 0; touches from either side. Features: 0 face, 1 rim of the
 // hole, 2 outer rim.
 struct Disc {
-  Vec3 point = Vec3::Zero();    // centre
-  Vec3 normal = Vec3::UnitZ();  // unit
+  Vec3 point = Vec3::Zero();           // centre
+  Vec3 normal = Vec3::UnitZ();         // unit
   double radius = 0, hole_radius = 0;  // m
 };
 
@@ -76,12 +76,12 @@ GluedGrains make_glued_grains(std::vector<Vec3> centres, std::vector<double> rad
 // Feature: (kind << 32) | number of the triangle, edge or vertex.
 struct MeshWall {
   std::shared_ptr<const MeshContactFinder> finder;  // body frame
-  double reach = 0;  // m, largest distance of a vertex from the body frame's origin
+  double reach = 0;                                 // m, largest distance of a vertex from the body frame's origin
 };
 MeshWall make_mesh_wall(TriangleMesh mesh);
 
-// TABLE of the shapes. To add one: a struct in this header (or its own), a row here, and its overloads in walls.cpp (the
-// compiler names those that are missing); walls_test.cpp runs over the rows.
+// TABLE of the shapes. To add one: a struct in this header (or its own), a row here, and its overloads in walls.cpp
+// (the compiler names those that are missing); wall_shapes_test.cpp runs over the rows.
 using WallShape = std::variant<Plane, Cylinder, Cone, Disc, GluedGrains, MeshWall>;
 
 struct Wall {
@@ -95,8 +95,8 @@ struct Wall {
 // lengths that are not > 0, ends and holes the wrong way round, missing parts; and see validate_motion, largest_speed.
 void validate_wall(const Wall& wall);
 
-// m/s, upper bound of the speed at which the surface moves, at any place and time. What maps a surface on itself does not
-// move it: spin of a surface of revolution about its own axis, and for planes and infinite cylinders motion along
+// m/s, upper bound of the speed at which the surface moves, at any place and time. What maps a surface on itself does
+// not move it: spin of a surface of revolution about its own axis, and for planes and infinite cylinders motion along
 // themselves. Throws CaseError for planes and infinite cylinders that turn about any other direction (to 1e-9 rad), as
 // their far parts then move at any speed. Meshes: goes through the vertices, once for each row of a table of poses.
 double largest_speed(const Wall& wall);
@@ -110,9 +110,9 @@ void candidate_parts(const Wall& wall, const WallPose& pose, const Vec3& centre,
 bool near(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach);
 
 // Is the point inside the wall's material, where no grain may be put? Sheets of revolution count as filled on the side
-// that is not free, between the planes of their ends; discs have no material. For meshes by the winding number, the sum of
-// solid angles of all triangles (van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125): exact for closed
-// surfaces, costs a pass over the mesh.
+// that is not free, between the planes of their ends; discs have no material. For meshes by the winding number, the sum
+// of solid angles of all triangles (van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125): exact for
+// closed surfaces, costs a pass over the mesh.
 bool inside_material(const Wall& wall, const WallPose& pose, const Vec3& x);
 
 // Touches within `reach`, replacing `out`. `parts` are the candidate parts. `scratch` is working space of the caller.

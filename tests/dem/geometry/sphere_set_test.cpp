@@ -22,8 +22,9 @@ TEST(SphereSet, FindsWhatTryingEverySphereFinds) {
       }
       const SphereSet set(centres, radii);
       for (int q = 0; q < 200; ++q) {
-        const Vec3 x = size.cwiseProduct(Vec3(uniform(rng, -0.2, 1.2), uniform(rng, -0.2, 1.2), uniform(rng, -0.2, 1.2))) +
-                       uniform(rng, 0, 0.3) * test::random_direction(rng);
+        const Vec3 x =
+            size.cwiseProduct(Vec3(uniform(rng, -0.2, 1.2), uniform(rng, -0.2, 1.2), uniform(rng, -0.2, 1.2))) +
+            uniform(rng, 0, 0.3) * test::random_direction(rng);
         const double reach = uniform(rng, 0, 0.4);
         std::vector<std::uint32_t> expected, near{77};  // within() appends
         for (std::uint32_t k = 0; k < count; ++k)

@@ -60,12 +60,13 @@ TEST(WallMotion, ThePivotMovesStraight) {
   motion.velocity = Vec3(0.5, 0, -0.25);
   motion.angular_velocity = Vec3(1, -2, 3);
   motion.pivot = Vec3(0.3, 0.1, -0.2);
-  EXPECT_NEAR((pose_at(motion, 0).position - motion.start).norm(), 0, 1e-16);
+  motion.orientation = random_orientation(rng);
+  EXPECT_NEAR((pose_at(motion, 0).position - motion.start).norm(), 0, 1e-15);
   for (int k = 0; k < 50; ++k) {
     const double time = uniform(rng, 0, 20);
     const WallPose pose = pose_at(motion, time);
     const Vec3 pivot = pose.position + pose.rotation * motion.pivot;
-    EXPECT_NEAR((pivot - (motion.start + motion.pivot + time * motion.velocity)).norm(), 0, 1e-14);
+    EXPECT_NEAR((pivot - (motion.start + motion.orientation * motion.pivot + time * motion.velocity)).norm(), 0, 1e-14);
   }
 }
 

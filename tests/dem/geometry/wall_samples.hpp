@@ -38,7 +38,8 @@ inline Patch revolved_patch(const Vec3& point, const Vec3& axis, double low_radi
 inline Patch sphere_patch(const Vec3& centre, double radius) {
   return [=](double& a, double& b) -> Vec3 {
     const double polar = pi * a, angle = 2 * pi * b;
-    return centre + radius * Vec3(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle), std::cos(polar));
+    return centre +
+           radius * Vec3(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle), std::cos(polar));
   };
 }
 
@@ -56,13 +57,18 @@ inline std::vector<WallSample> wall_samples() {
   const double inf = std::numeric_limits<double>::infinity();
   std::mt19937_64 rng(5);
   std::vector<WallSample> samples;
-  samples.push_back({"plane", Plane{point, axis},
-                     {[=](double& a, double& b) -> Vec3 { return point + 4 * (a - 0.5) * u + 4 * (b - 0.5) * w; }}, true,
+  samples.push_back({"plane",
+                     Plane{point, axis},
+                     {[=](double& a, double& b) -> Vec3 { return point + 4 * (a - 0.5) * u + 4 * (b - 0.5) * w; }},
+                     true,
                      false});
   const auto cylinder = [&](const std::string& name, FreeSide free, double low, double high) {
-    samples.push_back({name, Cylinder{point, axis, 0.8, free, low, high},
-                       {revolved_patch(point, axis, 0.8, 0.8, std::max(low, -2.0), std::min(high, 2.0), std::isinf(low))},
-                       std::isinf(low), true});
+    samples.push_back(
+        {name,
+         Cylinder{point, axis, 0.8, free, low, high},
+         {revolved_patch(point, axis, 0.8, 0.8, std::max(low, -2.0), std::min(high, 2.0), std::isinf(low))},
+         std::isinf(low),
+         true});
   };
   cylinder("bore", FreeSide::inside, -inf, inf);
   cylinder("rod", FreeSide::outside, -inf, inf);

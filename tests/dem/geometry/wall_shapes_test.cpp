@@ -20,8 +20,12 @@ WallPose random_pose(std::mt19937_64& rng) {
   return pose_at(motion, 0);
 }
 
-Vec3 to_lab(const WallPose& pose, const Vec3& body) { return pose.position + pose.rotation * body; }
-Vec3 to_body(const WallPose& pose, const Vec3& lab) { return pose.rotation.transpose() * (lab - pose.position); }
+Vec3 to_lab(const WallPose& pose, const Vec3& body) {
+  return pose.position + pose.rotation * body;
+}
+Vec3 to_body(const WallPose& pose, const Vec3& lab) {
+  return pose.rotation.transpose() * (lab - pose.position);
+}
 
 const WallTouch* same_feature(const std::vector<WallTouch>& touches, std::uint64_t feature) {
   const auto found = std::ranges::find(touches, feature, &WallTouch::feature);
@@ -111,7 +115,8 @@ TEST(WallShapes, CurvaturesAreThoseOfTheDistance) {
         bool kept = true;
         for (int c = 0; c < 3 && kept; ++c) {
           const Vec3 step = h * Vec3::Unit(c);
-          const auto up = touches_of(wall, pose, centre + step, reach), down = touches_of(wall, pose, centre - step, reach);
+          const auto up = touches_of(wall, pose, centre + step, reach),
+                     down = touches_of(wall, pose, centre - step, reach);
           const WallTouch *a = same_feature(up, touch.feature), *b = same_feature(down, touch.feature);
           kept = a != nullptr && b != nullptr;
           if (kept) divergence += (a->normal[c] - b->normal[c]) / (2 * h);
@@ -256,8 +261,8 @@ TEST(WallShapes, AGrainThatIsCarriedAlongKeepsItsTouch) {
     }
 }
 
-// How fast the distance from a fixed place changes, at the places and times where it changes fastest, is never more than
-// largest_speed and not much less.
+// How fast the distance from a fixed place changes, at the places and times where it changes fastest, is never more
+// than largest_speed and not much less.
 TEST(WallShapes, NoSurfaceMovesFasterThanItsLargestSpeed) {
   std::mt19937_64 rng(8);
   const double h = 1e-6;
@@ -316,7 +321,9 @@ TEST(WallShapes, WhatMapsASurfaceOnItselfDoesNotMoveIt) {
 }
 
 TEST(WallShapes, MaterialIsBehindTheFreeSide) {
-  const auto filled = [](WallShape shape, const Vec3& x) { return inside_material({"", 0, std::move(shape), {}}, {}, x); };
+  const auto filled = [](WallShape shape, const Vec3& x) {
+    return inside_material({"", 0, std::move(shape), {}}, {}, x);
+  };
   EXPECT_TRUE(filled(Plane{}, Vec3(5, 5, -1e-9)));
   EXPECT_FALSE(filled(Plane{}, Vec3(5, 5, 1e-9)));
   const Cylinder rod{Vec3::Zero(), Vec3::UnitZ(), 1, FreeSide::outside, 0, 2};
