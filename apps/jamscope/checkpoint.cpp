@@ -221,6 +221,50 @@ Checkpoint read_checkpoint(const std::string& path) {
   return checkpoint;
 }
 
+namespace {
+
+// f(number) for everything that a shape is made of.
+template <class F>
+void visit_vector(const Vec3& v, F&& f) {
+  for (const double x : v) f(x);
+}
+template <class F>
+void visit_numbers(const dem::Plane& s, F&& f) {
+  visit_vector(s.point, f);
+  visit_vector(s.normal, f);
+}
+template <class F>
+void visit_numbers(const dem::Cylinder& s, F&& f) {
+  visit_vector(s.point, f);
+  visit_vector(s.axis, f);
+  for (const double x : {s.radius, s.low, s.high, double(s.free)}) f(x);
+}
+template <class F>
+void visit_numbers(const dem::Cone& s, F&& f) {
+  visit_vector(s.point, f);
+  visit_vector(s.axis, f);
+  for (const double x : {s.low_radius, s.high_radius, s.length, double(s.free)}) f(x);
+}
+template <class F>
+void visit_numbers(const dem::Disc& s, F&& f) {
+  visit_vector(s.point, f);
+  visit_vector(s.normal, f);
+  for (const double x : {s.radius, s.hole_radius}) f(x);
+}
+template <class F>
+void visit_numbers(const dem::GluedGrains& s, F&& f) {
+  for (const Vec3& centre : s.spheres->centres()) visit_vector(centre, f);
+  for (const double radius : s.spheres->radii()) f(radius);
+}
+template <class F>
+void visit_numbers(const dem::MeshWall& s, F&& f) {
+  for (const Vec3& v : s.finder->mesh().vertices) visit_vector(v, f);
+  for (const auto& t : s.finder->mesh().triangles)
+    for (const std::uint32_t v : t) f(double(v));
+}
+
+}  // namespace
+
 std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, double vessel_radius) {
   std::string bytes = "bed recipe " + std::to_string(dem::bed_recipe) + ";";
   const auto number = [&bytes](double x) {
@@ -238,12 +282,12 @@ std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, double vessel_
       for (const double x : {i.restitution, i.friction, i.rolling_friction, i.work_of_adhesion, i.rolling_damping}) number(x);
   for (const dem::Wall& w : setup.walls) {
     number(double(w.material));
-    vector(w.motion.start);
-    if (const auto* mesh = std::get_if<dem::MeshWall>(&w.shape)) {
-      for (const Vec3& v : mesh->finder->mesh().vertices) vector(v);
-      for (const auto& t : mesh->finder->mesh().triangles)
-        for (const std::uint32_t v : t) number(v);
-    }
+    // A bed settles with all walls where they are at the start.
+    const dem::WallPose pose = dem::pose_at(w.motion, 0);
+    vector(pose.position);
+    for (const double x : pose.orientation.coeffs()) number(x);
+    number(double(w.shape.index()));
+    std::visit([&](const auto& shape) { visit_numbers(shape, number); }, w.shape);
   }
   vector(setup.gravity);
   for (const double x : {setup.step, vessel_radius, bed.mean_diameter, bed.size_low, bed.size_high, bed.depth}) number(x);

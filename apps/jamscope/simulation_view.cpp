@@ -14,27 +14,59 @@ jam::WallRole role_of(std::size_t wall) {
   return wall == dem::wall_blade ? jam::WallRole::blade : jam::WallRole::vessel;
 }
 
+// The shape as the snapshot file has it.
+std::string text_of(dem::FreeSide free) { return free == dem::FreeSide::inside ? "inside" : "outside"; }
+
+void describe(const dem::Plane& plane, jam::Wall& info) {
+  info.kind = "plane";
+  info.point = plane.point;
+  info.axis = plane.normal;
+}
+void describe(const dem::Cylinder& cylinder, jam::Wall& info) {
+  info.kind = "cylinder";
+  info.point = cylinder.point;
+  info.axis = cylinder.axis;
+  info.radius = cylinder.radius;
+  info.free_side = text_of(cylinder.free);
+  info.low = cylinder.low;
+  info.high = cylinder.high;
+}
+void describe(const dem::Cone& cone, jam::Wall& info) {
+  info.kind = "cone";
+  info.point = cone.point;
+  info.axis = cone.axis;
+  info.radius = cone.low_radius;
+  info.high_radius = cone.high_radius;
+  info.free_side = text_of(cone.free);
+  info.low = 0;
+  info.high = cone.length;
+}
+void describe(const dem::Disc& disc, jam::Wall& info) {
+  info.kind = "disc";
+  info.point = disc.point;
+  info.axis = disc.normal;
+  info.radius = disc.radius;
+  info.hole_radius = disc.hole_radius;
+}
+void describe(const dem::GluedGrains& glued, jam::Wall& info) {
+  info.kind = "spheres";
+  info.sphere_centre.assign(glued.spheres->centres().begin(), glued.spheres->centres().end());
+  info.sphere_radius.assign(glued.spheres->radii().begin(), glued.spheres->radii().end());
+}
+void describe(const dem::MeshWall& wall, jam::Wall& info) {
+  info.kind = "mesh";
+  const dem::TriangleMesh& mesh = wall.finder->mesh();
+  info.vertices = mesh.vertices;
+  info.triangles = mesh.triangles;
+  for (const dem::FacetLabel label : mesh.labels) info.triangle_label.push_back(std::uint8_t(label));
+}
+
 jam::Wall wall_info(const dem::Wall& wall, jam::WallRole role, const std::string& material) {
   jam::Wall info;
   info.name = wall.name;
   info.role = role;
   info.material = material;
-  if (const auto* plane = std::get_if<dem::Plane>(&wall.shape)) {
-    info.kind = "plane";
-    info.point = plane->point;
-    info.axis = plane->normal;
-  } else if (const auto* cylinder = std::get_if<dem::CylinderInside>(&wall.shape)) {
-    info.kind = "cylinder";
-    info.point = cylinder->point;
-    info.axis = cylinder->axis;
-    info.radius = cylinder->radius;
-  } else {
-    info.kind = "mesh";
-    const dem::TriangleMesh& mesh = std::get<dem::MeshWall>(wall.shape).finder->mesh();
-    info.vertices = mesh.vertices;
-    info.triangles = mesh.triangles;
-    for (const dem::FacetLabel label : mesh.labels) info.triangle_label.push_back(std::uint8_t(label));
-  }
+  std::visit([&](const auto& shape) { describe(shape, info); }, wall.shape);
   return info;
 }
 

@@ -43,7 +43,7 @@ Particles loose_column(const Setup& setup, const Bed& bed, std::uint8_t material
         bool free = true;
         for (std::size_t w = 0; w < setup.walls.size() && free; ++w) {
           triangles.clear();
-          candidate_triangles(setup.walls[w], poses[w], x, radius, triangles);
+          candidate_parts(setup.walls[w], poses[w], x, radius, triangles);
           nearest(setup.walls[w], poses[w], x, radius, triangles, touches, scratch);
           free = touches.empty() && !inside_material(setup.walls[w], poses[w], x);
         }
@@ -66,7 +66,7 @@ Setup softened(const Setup& run, double modulus) {
       soft.interactions[a][b].work_of_adhesion *= std::pow(ratio, 0.4);
       soft.interactions[a][b].restitution = std::min(soft.interactions[a][b].restitution, 0.3);
     }
-  for (Wall& w : soft.walls) w.motion = {w.motion.start, Vec3::Zero(), Vec3::Zero()};
+  for (Wall& w : soft.walls) w.motion = resting_at(w.motion, 0);
   return soft;
 }
 
@@ -205,7 +205,7 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, d
   // At the true stiffness, adhesion and restitution: long enough for a grain without support to fall by micrometres, much
   // more than the overlaps that are left.
   Setup still = setup;
-  for (Wall& w : still.walls) w.motion = {w.motion.start, Vec3::Zero(), Vec3::Zero()};
+  for (Wall& w : still.walls) w.motion = resting_at(w.motion, 0);
   state = recipe.run(still, std::move(state), {"resting", setup.step, 2e3, 1e-3, 2e-3, 0.01 * rest});
 
   SettledBed result;

@@ -33,7 +33,7 @@ Rheometer make_rheometer(const Case& c) {
   const std::size_t vessel = material_index(c, c.vessel.material), blade = material_index(c, c.blade.material);
   setup.walls = {
       Wall{"floor", vessel, Plane{Vec3::Zero(), Vec3::UnitZ()}, {}},
-      Wall{"cylinder", vessel, CylinderInside{Vec3::Zero(), Vec3::UnitZ(), vessel_radius}, {}},
+      Wall{"cylinder", vessel, Cylinder{Vec3::Zero(), Vec3::UnitZ(), vessel_radius}, {}},
       Wall{"blade", blade, make_mesh_wall(std::move(surface.mesh)), motion},
   };
   // Centres stay inside the vessel; above the bed there is room to be thrown.

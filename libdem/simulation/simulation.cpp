@@ -190,7 +190,7 @@ struct Simulation::Engine {
         c.particle = i;
         c.wall = w;
         c.triangle_begin = std::uint32_t(fresh.triangles.size());
-        candidate_triangles(setup.walls[w], poses[w], p.position[i], reach, fresh.triangles);
+        candidate_parts(setup.walls[w], poses[w], p.position[i], reach, fresh.triangles);
         c.triangle_end = std::uint32_t(fresh.triangles.size());
         if (std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.triangle_begin == c.triangle_end) continue;
         c.constants = wall_constants(materials(p.material[i], setup.walls[w].material),

@@ -35,7 +35,9 @@ void list_items(const h5::File& file, FileReport& report) {
     } else {
       for (const Wall& wall : report.info.walls) {
         const bool of_mesh = item.axis == schema::vertex || item.axis == schema::triangle;
-        if (!of_mesh || wall.kind == "mesh") paths.push_back(schema::path_of(item, wall.name));
+        const bool of_spheres = item.axis == schema::sphere;
+        if ((of_mesh && wall.kind != "mesh") || (of_spheres && wall.kind != "spheres")) continue;
+        paths.push_back(schema::path_of(item, wall.name));
       }
     }
     for (const std::string& path : paths) (file.exists(path) ? report.present : report.absent).push_back(path);

@@ -1,4 +1,4 @@
-// The snapshot file, schema 1.0, as one table. Writer, reader, validation, inspection and SCHEMA.md all follow it.
+// The snapshot file, schema 1.1, as one table. Writer, reader, validation, inspection and SCHEMA.md all follow it.
 // SCHEMA.md says in prose what the table cannot: the append protocol, the checksum, the compatibility rule.
 #pragma once
 #include <array>
@@ -23,6 +23,7 @@ enum class Axis : std::uint8_t {
   interaction,  // M x M pairs of materials
   vertex,       // V mesh vertices of a wall
   triangle,     // F mesh triangles of a wall
+  sphere,       // G glued spheres of a wall
   frame,        // T frames
   particle,     // P rows, a frame's are [particle_start, particle_start + particle_count)
   pp,           // C rows, a frame's are [pp_start, pp_start + pp_count)
@@ -75,13 +76,24 @@ inline constexpr Item table[] = {
     {"/interactions/work_of_adhesion", T::f8, 1, interaction, optional, "J/m^2", "work of adhesion of the pair"},
 
     {"/walls/*@id", T::u1, 1, attribute, required, "1", "number of the wall in /contacts/pw/wall"},
-    {"/walls/*@kind", T::text, 1, attribute, required, "1", "plane, cylinder or mesh"},
+    {"/walls/*@kind", T::text, 1, attribute, required, "1", "plane, cylinder, cone, disc, spheres or mesh"},
     {"/walls/*@role", T::text, 1, attribute, required, "1", "blade, vessel or other"},
     {"/walls/*@material", T::text, 1, attribute, optional, "1", "name in /materials/name"},
     {"/walls/*@torque_origin", T::text, 1, attribute, required, "1", "always 'pose_position'"},
-    {"/walls/*@point", T::f8, 3, attribute, optional, "m", "plane: a point of it; cylinder: a point of its axis"},
-    {"/walls/*@axis", T::f8, 3, attribute, optional, "1", "plane: unit normal into the free side; cylinder: its axis"},
-    {"/walls/*@radius", T::f8, 1, attribute, optional, "m", "cylinder: radius"},
+    {"/walls/*@point", T::f8, 3, attribute, optional, "m",
+     "plane: a point of it; cylinder, cone: a point of its axis; disc: its centre"},
+    {"/walls/*@axis", T::f8, 3, attribute, optional, "1",
+     "plane: unit normal into the free side; cylinder, cone: its axis; disc: its normal"},
+    {"/walls/*@radius", T::f8, 1, attribute, optional, "m", "cylinder, disc: radius; cone: radius at low"},
+    {"/walls/*@high_radius", T::f8, 1, attribute, optional, "m", "cone: radius at high"},
+    {"/walls/*@hole_radius", T::f8, 1, attribute, optional, "m", "disc: radius of its hole; absent: no hole"},
+    {"/walls/*@low", T::f8, 1, attribute, optional, "m",
+     "cylinder, cone: lower end along the axis from point; absent: endless"},
+    {"/walls/*@high", T::f8, 1, attribute, optional, "m",
+     "cylinder, cone: upper end along the axis from point; absent: endless"},
+    {"/walls/*@free_side", T::text, 1, attribute, optional, "1", "cylinder, cone: inside or outside"},
+    {"/walls/*/sphere_centre", T::f8, 3, sphere, optional, "m", "centres of glued spheres in the body frame"},
+    {"/walls/*/sphere_radius", T::f8, 1, sphere, optional, "m", "radii of glued spheres"},
     {"/walls/*/vertices", T::f8, 3, vertex, optional, "m", "mesh vertices in the body frame"},
     {"/walls/*/triangles", T::u4, 3, triangle, optional, "1", "rows of vertices, counter-clockwise from outside"},
     {"/walls/*/triangle_label", T::u1, 1, triangle, optional, "1", "0 face, 1 edge, 2 tip, 3 hub"},
@@ -124,8 +136,8 @@ inline constexpr Item table[] = {
 
     {"/contacts/pw/row", T::u4, 1, pw, required, "1", "row of the particle, counted from particle_start"},
     {"/contacts/pw/wall", T::u1, 1, pw, required, "1", "id of the wall; sorted by row, wall, facet"},
-    {"/contacts/pw/facet", T::u4, 1, pw, optional, "1", "triangle of a mesh wall, 0 for other walls"},
-    {"/contacts/pw/feature", T::u1, 1, pw, optional, "1", "0 face, 1 edge, 2 vertex of the mesh was touched"},
+    {"/contacts/pw/facet", T::u4, 1, pw, optional, "1", "triangle of a mesh, number of a glued sphere, 0 for other walls"},
+    {"/contacts/pw/feature", T::u1, 1, pw, optional, "1", "0 face, 1 edge or rim, 2 vertex was touched"},
     {"/contacts/pw/point", T::f4, 3, pw, optional, "m", "contact point on the wall"},
     {"/contacts/pw/normal", T::f4, 3, pw, optional, "1", "unit vector from the particle to the wall"},
     {"/contacts/pw/normal_force", T::f4, 1, pw, required, "N",

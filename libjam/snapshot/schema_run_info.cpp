@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "libjam/errors.hpp"
@@ -81,10 +82,20 @@ void write_wall(h5::File& file, const Wall& wall, std::uint8_t id) {
   set_text(file, item("/walls/*@material"), wall.material, wall.name);
   set_text(file, item("/walls/*@torque_origin"), "pose_position", wall.name);
   const Wall none;
-  const bool analytic = wall.kind != "mesh";
+  const bool analytic = wall.kind != "mesh" && wall.kind != "spheres";
   if (analytic || wall.point != none.point) set(file, column<Vec3>("/walls/*@point"), wall.point, wall.name);
   if (analytic || wall.axis != none.axis) set(file, column<Vec3>("/walls/*@axis"), wall.axis, wall.name);
-  if (wall.radius != 0) set(file, column<double>("/walls/*@radius"), wall.radius, wall.name);
+  if (wall.radius != 0 || wall.kind == "cone") set(file, column<double>("/walls/*@radius"), wall.radius, wall.name);
+  if (wall.high_radius != 0 || wall.kind == "cone")
+    set(file, column<double>("/walls/*@high_radius"), wall.high_radius, wall.name);
+  if (wall.hole_radius != 0) set(file, column<double>("/walls/*@hole_radius"), wall.hole_radius, wall.name);
+  if (std::isfinite(wall.low)) set(file, column<double>("/walls/*@low"), wall.low, wall.name);
+  if (std::isfinite(wall.high)) set(file, column<double>("/walls/*@high"), wall.high, wall.name);
+  set_text(file, item("/walls/*@free_side"), wall.free_side, wall.name);
+  if (!wall.sphere_centre.empty()) {
+    write(file, column<Vec3>("/walls/*/sphere_centre"), wall.sphere_centre, wall.name);
+    write(file, column<double>("/walls/*/sphere_radius"), wall.sphere_radius, wall.name);
+  }
   if (!wall.vertices.empty()) write(file, column<Vec3>("/walls/*/vertices"), wall.vertices, wall.name);
   if (!wall.triangles.empty()) {
     write(file, column<std::array<std::uint32_t, 3>>("/walls/*/triangles"), wall.triangles, wall.name);
@@ -108,9 +119,16 @@ Wall read_wall(const h5::File& file, const std::string& name) {
   get_optional(file, column<Vec3>("/walls/*@point"), wall.point, name);
   get_optional(file, column<Vec3>("/walls/*@axis"), wall.axis, name);
   get_optional(file, column<double>("/walls/*@radius"), wall.radius, name);
+  get_optional(file, column<double>("/walls/*@high_radius"), wall.high_radius, name);
+  get_optional(file, column<double>("/walls/*@hole_radius"), wall.hole_radius, name);
+  get_optional(file, column<double>("/walls/*@low"), wall.low, name);
+  get_optional(file, column<double>("/walls/*@high"), wall.high, name);
+  get_optional(file, item("/walls/*@free_side"), wall.free_side, name);
   const auto read = [&]<class V>(const Item& i, std::vector<V>& values) {
     if (const std::string path = path_of(i, name); file.exists(path)) values = file.read<V>(path);
   };
+  read(column<Vec3>("/walls/*/sphere_centre"), wall.sphere_centre);
+  read(column<double>("/walls/*/sphere_radius"), wall.sphere_radius);
   read(column<Vec3>("/walls/*/vertices"), wall.vertices);
   read(column<std::array<std::uint32_t, 3>>("/walls/*/triangles"), wall.triangles);
   read(column<std::uint8_t>("/walls/*/triangle_label"), wall.triangle_label);

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,7 @@ struct ParticleContacts {
 struct WallContacts {
   std::vector<std::uint32_t> row;         // [W] row of the particle; sorted by (row, wall, facet)
   std::vector<std::uint8_t> wall;         // [W] index into RunInfo::walls
-  std::vector<std::uint32_t> facet;       // [W] triangle of a mesh wall, 0 for analytic walls, or absent
+  std::vector<std::uint32_t> facet;       // [W] triangle of a mesh, sphere of glued ones, else 0; or absent
   std::vector<std::uint8_t> feature;      // [W] WallFeature, or absent
   std::vector<Vec3f> point;               // [W] m, contact point on the wall, or absent
   std::vector<Vec3f> normal;              // [W] unit, from the particle to the wall, or absent
@@ -99,13 +100,21 @@ enum class WallRole : std::uint8_t { other = 0, blade = 1, vessel = 2 };
 
 struct Wall {
   std::string name;
-  std::string kind;  // "plane", "cylinder", "mesh"
+  std::string kind;  // "plane", "cylinder", "cone", "disc", "spheres", "mesh"
   WallRole role = WallRole::other;
   std::string material;                  // name in RunInfo::materials, or empty
-  // Analytic walls. plane: point and unit normal into the material-free side. cylinder: point on the axis, axis, radius.
+  // Analytic walls, in the body frame. plane: point and unit normal into the material-free side. cylinder and cone: point
+  // on the axis, axis, radius (of the cone at `low`), ends along the axis from `point`. disc: centre, normal, radii.
   Vec3 point = Vec3::Zero();
   Vec3 axis = Vec3::UnitZ();
-  double radius = 0;  // m
+  double radius = 0;       // m
+  double high_radius = 0;  // m, of a cone at `high`
+  double hole_radius = 0;  // m, of a disc
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();  // m
+  std::string free_side;   // of cylinders and cones: "inside", "outside", or empty if unknown
+  // Spheres that are glued to each other, in the body frame.
+  std::vector<Vec3> sphere_centre;    // m
+  std::vector<double> sphere_radius;  // m
   // Meshes, in the body frame.
   std::vector<Vec3> vertices;                          // m
   std::vector<std::array<std::uint32_t, 3>> triangles;  // rows of `vertices`

@@ -1,9 +1,11 @@
 #include "libjam/snapshot/validate.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <string_view>
 #include <tuple>
 
 #include "libjam/errors.hpp"
@@ -115,6 +117,47 @@ void check_pp(const ParticleContacts& c, std::size_t particles, const std::strin
   }
 }
 
+constexpr std::array<std::string_view, 6> wall_kinds{"plane", "cylinder", "cone", "disc", "spheres", "mesh"};
+
+void check_wall_shape(const Wall& w, const std::string& name, const std::string& place) {
+  check_finite(w.point, name + ": point", place);
+  check_finite(w.axis, name + ": axis", place);
+  check_not_negative(w.radius, name + ": radius", place);
+  check_not_negative(w.high_radius, name + ": high radius", place);
+  check_not_negative(w.hole_radius, name + ": hole radius", place);
+  if (w.kind != "mesh" && w.kind != "spheres" && std::abs(w.axis.norm() - 1) > 1e-6) {
+    fail(place, name + " has an axis of length " + text(w.axis.norm()) + ", expected 1");
+  }
+  if ((w.kind == "cylinder" || w.kind == "disc") && !(w.radius > 0)) {
+    fail(place, name + " has radius 0, expected > 0");
+  }
+  if (w.kind == "cone") {
+    if (!(w.radius > 0 || w.high_radius > 0)) fail(place, name + " has radius 0 at both ends, expected one > 0");
+    check_finite(w.low, name + ": low", place);
+    check_finite(w.high, name + ": high", place);
+  }
+  if (!(w.low < w.high)) {
+    fail(place, name + " has its ends at " + text(w.low) + " m and " + text(w.high) + " m, expected the lower first");
+  }
+  if (w.kind == "disc" && !(w.hole_radius < w.radius)) {
+    fail(place, name + " has a hole of radius " + text(w.hole_radius) + " m, expected less than its own radius, " +
+                    text(w.radius) + " m");
+  }
+  if (!w.free_side.empty() && w.free_side != "inside" && w.free_side != "outside") {
+    fail(place, name + " has its free side '" + w.free_side + "', expected inside or outside");
+  }
+  if (w.sphere_centre.size() != w.sphere_radius.size() || (w.kind == "spheres") != !w.sphere_centre.empty()) {
+    fail(place, name + " of kind " + w.kind + " has " + text(w.sphere_centre.size()) + " centres and " +
+                    text(w.sphere_radius.size()) + " radii of spheres");
+  }
+  check_all_finite(w.sphere_centre, name + ": sphere centres", place);
+  for (std::size_t s = 0; s < w.sphere_radius.size(); ++s) {
+    if (!(w.sphere_radius[s] > 0) || !std::isfinite(w.sphere_radius[s])) {
+      fail(place, name + ": sphere " + text(s) + " has radius " + text(w.sphere_radius[s]) + " m, expected > 0");
+    }
+  }
+}
+
 void check_pw(const WallContacts& c, std::size_t particles, const RunInfo& info, const std::string& place) {
   schema::visit_pw(c, [&](const Item& item, const auto& values) {
     check_column(item, std::string(item.path), values, c.size(), place);
@@ -130,10 +173,10 @@ void check_pw(const WallContacts& c, std::size_t particles, const RunInfo& info,
     if (c.wall[k] >= info.walls.size()) {
       fail(place, name + " names wall " + text(c.wall[k]) + ", the run has " + text(info.walls.size()));
     }
-    const std::size_t facets = info.walls[c.wall[k]].triangles.size();
+    const Wall& touched = info.walls[c.wall[k]];
+    const std::size_t facets = touched.kind == "spheres" ? touched.sphere_radius.size() : touched.triangles.size();
     if (!c.facet.empty() && facets > 0 && c.facet[k] >= facets) {
-      fail(place, name + " names facet " + text(c.facet[k]) + ", wall '" + info.walls[c.wall[k]].name + "' has " +
-                      text(facets));
+      fail(place, name + " names facet " + text(c.facet[k]) + ", wall '" + touched.name + "' has " + text(facets));
     }
     if (!c.feature.empty() && c.feature[k] > static_cast<std::uint8_t>(WallFeature::vertex)) {
       fail(place, name + " has feature " + text(c.feature[k]) + ", expected 0, 1 or 2");
@@ -190,20 +233,14 @@ void validate(const RunInfo& info, const std::string& place) {
       fail(place, name + ": expected a name without '/' that is not empty, '.' or '..'");
     }
     if (!names.insert(w.name).second) fail(place, name + ": the name is used twice");
-    if (w.kind != "plane" && w.kind != "cylinder" && w.kind != "mesh") {
-      fail(place, name + " has kind '" + w.kind + "', expected plane, cylinder or mesh");
+    if (std::ranges::find(wall_kinds, w.kind) == wall_kinds.end()) {
+      fail(place, name + " has kind '" + w.kind + "', expected plane, cylinder, cone, disc, spheres or mesh");
     }
     if (w.role > WallRole::vessel) fail(place, name + " has an unknown role, expected blade, vessel or other");
     if (!w.material.empty() && !materials.contains(w.material)) {
       fail(place, name + " names material '" + w.material + "', which the run does not have");
     }
-    check_finite(w.point, name + ": point", place);
-    check_finite(w.axis, name + ": axis", place);
-    check_not_negative(w.radius, name + ": radius", place);
-    if (w.kind != "mesh" && std::abs(w.axis.norm() - 1) > 1e-6) {
-      fail(place, name + " has an axis of length " + text(w.axis.norm()) + ", expected 1");
-    }
-    if (w.kind == "cylinder" && !(w.radius > 0)) fail(place, name + " has radius 0, expected > 0");
+    check_wall_shape(w, name, place);
     check_all_finite(w.vertices, name + ": vertices", place);
     for (std::size_t t = 0; t < w.triangles.size(); ++t) {
       for (const std::uint32_t v : w.triangles[t]) {

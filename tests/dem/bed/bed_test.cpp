@@ -15,7 +15,7 @@ constexpr double radius = 4e-3;
 
 Setup vessel() {
   dem::Setup setup = support::glass_setup();
-  setup.walls = {Wall{"floor", 0, Plane{}, {}}, Wall{"cylinder", 0, CylinderInside{Vec3::Zero(), Vec3::UnitZ(), radius}, {}}};
+  setup.walls = {Wall{"floor", 0, Plane{}, {}}, Wall{"cylinder", 0, Cylinder{Vec3::Zero(), Vec3::UnitZ(), radius}, {}}};
   return setup;
 }
 

@@ -12,7 +12,7 @@ namespace {
 std::vector<WallTouch> touches(const Wall& wall, double time, const Vec3& centre, double reach) {
   const WallPose pose = pose_at(wall.motion, time);
   std::vector<std::uint32_t> triangles;
-  candidate_triangles(wall, pose, centre, reach, triangles);
+  candidate_parts(wall, pose, centre, reach, triangles);
   std::vector<WallTouch> out;
   std::vector<MeshTouch> scratch;
   nearest(wall, pose, centre, reach, triangles, out, scratch);
@@ -36,7 +36,7 @@ TEST(Walls, APlaneIsNearestStraightBelow) {
 }
 
 TEST(Walls, ACylinderIsNearestStraightOutward) {
-  const Wall vessel{"cylinder", 0, CylinderInside{Vec3::Zero(), Vec3::UnitZ(), 12.5}, {}};
+  const Wall vessel{"cylinder", 0, Cylinder{Vec3::Zero(), Vec3::UnitZ(), 12.5}, {}};
   for (double angle = 0; angle < 6; angle += 0.7) {
     const Vec3 outward(std::cos(angle), std::sin(angle), 0);
     const auto found = touches(vessel, 0, 12.1 * outward + Vec3(0, 0, 7), 0.5);
@@ -46,7 +46,11 @@ TEST(Walls, ACylinderIsNearestStraightOutward) {
     EXPECT_NEAR((found[0].point - 12.5 * outward - Vec3(0, 0, 7)).norm(), 0, 1e-14);
   }
   EXPECT_TRUE(touches(vessel, 0, Vec3(11.9, 0, 0), 0.5).empty());
-  EXPECT_TRUE(touches(vessel, 0, Vec3(0, 0, 3), 13).empty());  // on the axis no direction is nearest
+  // On the axis every direction is as near as any other: one is given.
+  const auto on_axis = touches(vessel, 0, Vec3(0, 0, 3), 13);
+  ASSERT_EQ(on_axis.size(), 1u);
+  EXPECT_NEAR(on_axis[0].distance, 12.5, 1e-14);
+  EXPECT_NEAR(on_axis[0].normal.z(), 0, 1e-15);
 }
 
 TEST(Walls, AMovingBladeIsWhereItsMotionPutsIt) {
@@ -73,7 +77,7 @@ TEST(Walls, KnowTheirInside) {
   EXPECT_TRUE(inside_material(wall, pose, Vec3(8e-3, 0, 5e-3)));    // in an arm
   EXPECT_FALSE(inside_material(wall, pose, Vec3(0, 8e-3, 5e-3)));   // between the arms
   EXPECT_FALSE(inside_material(wall, pose, Vec3(12e-3, 0, 5e-3)));  // in the gap
-  const Wall vessel{"cylinder", 0, CylinderInside{Vec3::Zero(), Vec3::UnitZ(), 12.5e-3}, {}};
+  const Wall vessel{"cylinder", 0, Cylinder{Vec3::Zero(), Vec3::UnitZ(), 12.5e-3}, {}};
   EXPECT_FALSE(inside_material(vessel, pose_at({}, 0), Vec3(12e-3, 0, 0)));
   EXPECT_TRUE(inside_material(vessel, pose_at({}, 0), Vec3(12e-3, 5e-3, 0)));
 }

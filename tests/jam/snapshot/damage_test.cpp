@@ -178,9 +178,9 @@ TEST_F(DamagedFile, ATruncatedFileGivesItsCompleteFramesOrAnError) {
       EXPECT_THAT(e.what(), HasSubstr("cut.h5")) << part;
     }
   }
-  // About half of so short a file are tables with room for 512 frames.
-  EXPECT_GE(opened, 8U);
-  EXPECT_GE(most, 6U);
+  // About two thirds of so short a file are tables with room for 512 frames.
+  EXPECT_GE(opened, 6U);
+  EXPECT_GE(most, 4U);
 }
 
 TEST_F(DamagedFile, FlippedBitsAreFoundOrDoNoHarm) {

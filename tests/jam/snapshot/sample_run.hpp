@@ -14,6 +14,8 @@
 
 namespace jam::sample {
 
+inline constexpr std::size_t wall_count = 6;
+
 inline RunInfo info() {
   RunInfo r;
   r.creator = "sample";
@@ -42,12 +44,36 @@ inline RunInfo info() {
   vessel.role = WallRole::vessel;
   vessel.point = {0.001, 0.002, 0.003};
   vessel.radius = 0.025;
+  vessel.low = -0.001;
+  vessel.high = 0.05;
+  vessel.free_side = "inside";
   Wall floor;
   floor.name = "floor";
   floor.kind = "plane";
   floor.material = "glass";
   floor.axis = {0, 0.6, 0.8};
-  r.walls = {vessel, blade, floor};  // not in the order of their names
+  Wall hopper;
+  hopper.name = "hopper";
+  hopper.kind = "cone";
+  hopper.point = {0.004, 0.005, 0.006};
+  hopper.axis = {0.8, 0, 0.6};
+  hopper.radius = 0.011;
+  hopper.high_radius = 0.012;
+  hopper.low = -0.013;
+  hopper.high = 0.014;
+  hopper.free_side = "outside";
+  Wall lid;
+  lid.name = "lid";
+  lid.kind = "disc";
+  lid.point = {0.007, 0.008, 0.009};
+  lid.radius = 0.015;
+  lid.hole_radius = 0.002;
+  Wall plate;
+  plate.name = "rough plate";
+  plate.kind = "spheres";
+  plate.sphere_centre = {{0, 0, 0}, {0.001, 0.002, 0}};
+  plate.sphere_radius = {0.0005, 0.0006};
+  r.walls = {vessel, blade, floor, hopper, lid, plate};  // not in the order of their names
   r.gap = {0.0235, 0.025, -0.003, 0.003};
   return r;
 }
@@ -84,8 +110,8 @@ inline Snapshot frame(std::size_t k, std::size_t particles = 60) {
   }
   for (std::uint32_t i = 0; i < n; i += 2) {
     s.pw.row.push_back(i);
-    s.pw.wall.push_back(static_cast<std::uint8_t>(random() % 3));
-    s.pw.facet.push_back(random() % 4);
+    s.pw.wall.push_back(static_cast<std::uint8_t>(random() % wall_count));
+    s.pw.facet.push_back(random() % 2);
     s.pw.feature.push_back(static_cast<std::uint8_t>(random() % 3));
     s.pw.point.push_back(vec());
     s.pw.normal.push_back((vec() + Vec3f(1, 0, 0)).normalized());
@@ -96,7 +122,7 @@ inline Snapshot frame(std::size_t k, std::size_t particles = 60) {
     s.pw.birth_step.push_back(random());
     s.pw.flags.push_back(static_cast<std::uint8_t>(random() % 16));
   }
-  for (std::size_t w = 0; w < 3; ++w) {
+  for (std::size_t w = 0; w < wall_count; ++w) {
     const auto big = [&] { return vec().cast<double>().eval(); };
     WallState state;
     state.position = big();
@@ -116,7 +142,7 @@ inline Series series(std::size_t k) {
   if (k == 0) return s;
   std::mt19937 random(static_cast<unsigned>(2000 + k));
   const auto real = [&] { return static_cast<double>(random()) / 4294967296.0; };
-  s.walls.resize(3);
+  s.walls.resize(wall_count);
   for (std::size_t r = 1; r <= 4; ++r) {
     s.step.push_back(40000 * (k - 1) + 10000 * r);
     s.time.push_back(5e-8 * static_cast<double>(s.step.back()));

@@ -49,8 +49,8 @@ TEST(Validate, ARowOutOfRangeIsNamedWithTheContact) {
             "run.h5:frame 1: contact 17 names particle row 5000, the frame has 61");
   EXPECT_EQ(spoilt([](Snapshot& s) { s.pw.row[3] = 61; }),
             "run.h5:frame 1: wall contact 3 names particle row 61, the frame has 61");
-  EXPECT_EQ(spoilt([](Snapshot& s) { s.pw.wall[3] = 3; }),
-            "run.h5:frame 1: wall contact 3 names wall 3, the run has 3");
+  EXPECT_EQ(spoilt([](Snapshot& s) { s.pw.wall[3] = 6; }),
+            "run.h5:frame 1: wall contact 3 names wall 6, the run has 6");
   EXPECT_THAT(spoilt([](Snapshot& s) {
                 s.pw.wall[3] = 1;
                 s.pw.facet[3] = 4;
@@ -146,7 +146,7 @@ TEST(Validate, NormalsAndQuaternionsAreUnit) {
               HasSubstr("wall 'blade': orientation quaternion of length 2, expected 1"));
   EXPECT_THAT(spoilt([](Snapshot& s) { s.walls[1].orientation.coeffs()[0] = NAN; }), HasSubstr("of length nan"));
   EXPECT_THAT(spoilt([](Snapshot& s) { s.walls[2].torque[1] = NAN; }), HasSubstr("wall 'floor': torque is nan"));
-  EXPECT_THAT(spoilt([](Snapshot& s) { s.walls.pop_back(); }), HasSubstr("2 wall states, expected one per wall, 3"));
+  EXPECT_THAT(spoilt([](Snapshot& s) { s.walls.pop_back(); }), HasSubstr("5 wall states, expected one per wall, 6"));
   EXPECT_THAT(spoilt([](Snapshot& s) { s.pw.feature[0] = 3; }), HasSubstr("feature 3, expected 0, 1 or 2"));
   EXPECT_THAT(spoilt([](Snapshot& s) { s.time = INFINITY; }), HasSubstr("time is inf"));
 }
@@ -156,7 +156,7 @@ TEST(Validate, ARunsWallsMaterialsAndTablesFitTogether) {
   EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[1].name = "a/b"; }), HasSubstr("wall 'a/b': expected a name"));
   EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[1].name = ""; }), HasSubstr("expected a name"));
   EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[1].kind = "sphere"; }),
-              HasSubstr("expected plane, cylinder or mesh"));
+              HasSubstr("expected plane, cylinder, cone, disc, spheres or mesh"));
   EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[1].material = "gold"; }), HasSubstr("names material 'gold'"));
   EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[0].radius = 0; }), HasSubstr("has radius 0"));
   EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[0].axis *= 2; }), HasSubstr("axis of length 2"));
@@ -170,6 +170,27 @@ TEST(Validate, ARunsWallsMaterialsAndTablesFitTogether) {
   EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls.resize(257, r.walls[0]); }), HasSubstr("257 walls"));
 }
 
+TEST(Validate, AWallsNumbersMakeItsShape) {
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[0].low = 0.06; }),
+              HasSubstr("wall 'vessel side' has its ends at 0.06 m and 0.05 m, expected the lower first"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[0].high = NAN; }), HasSubstr("expected the lower first"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[0].free_side = "left"; }), HasSubstr("its free side 'left'"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[3].radius = r.walls[3].high_radius = 0; }),
+              HasSubstr("wall 'hopper' has radius 0 at both ends"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[3].high_radius = -1; }), HasSubstr("high radius is -1"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[3].low = -INFINITY; }), HasSubstr("wall 'hopper': low is -inf"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[4].hole_radius = 0.02; }),
+              HasSubstr("wall 'lid' has a hole of radius 0.02 m, expected less than its own radius, 0.015 m"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[5].sphere_radius.pop_back(); }), HasSubstr("2 centres and 1 radii"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[5].sphere_radius[1] = 0; }), HasSubstr("sphere 1 has radius 0 m"));
+  EXPECT_THAT(spoilt_run([](RunInfo& r) { r.walls[5].sphere_centre[1][2] = NAN; }), HasSubstr("sphere centres row 1"));
+  EXPECT_THAT(spoilt([](Snapshot& s) {
+                s.pw.wall[3] = 5;
+                s.pw.facet[3] = 2;
+              }),
+              HasSubstr("wall contact 3 names facet 2, wall 'rough plate' has 2"));
+}
+
 TEST(Validate, ASeriesGoesForwardInTimeWithColumnsOfOneLength) {
   EXPECT_THAT(spoilt_series([](Series& s) { s.time[2] = s.time[1]; }), HasSubstr("/series row 2"));
   EXPECT_THAT(spoilt_series([](Series& s) { s.step[3] = 0; }), HasSubstr("/series row 3"));
@@ -177,7 +198,7 @@ TEST(Validate, ASeriesGoesForwardInTimeWithColumnsOfOneLength) {
   EXPECT_THAT(spoilt_series([](Series& s) { s.kinetic_energy.pop_back(); }), HasSubstr("/series/kinetic_energy has 3"));
   EXPECT_THAT(spoilt_series([](Series& s) { s.walls[1].power[1] = NAN; }),
               HasSubstr("/series/walls/blade/power row 1 is nan"));
-  EXPECT_THAT(spoilt_series([](Series& s) { s.walls.resize(4); }), HasSubstr("4 walls in the series"));
+  EXPECT_THAT(spoilt_series([](Series& s) { s.walls.resize(7); }), HasSubstr("7 walls in the series"));
   EXPECT_EQ(spoilt_series([](Series& s) { s.walls.clear(); }), "no error");
 }
 

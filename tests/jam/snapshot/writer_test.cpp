@@ -60,8 +60,8 @@ TEST_F(SnapshotFile, WhatIsKnownAboutTheRunComesBackExactly) {
       EXPECT_EQ(a.interactions[m][n].work_of_adhesion, b.interactions[m][n].work_of_adhesion);
     }
   }
-  ASSERT_EQ(b.walls.size(), 3U);
-  for (std::size_t w = 0; w < 3; ++w) {
+  ASSERT_EQ(b.walls.size(), sample::wall_count);
+  for (std::size_t w = 0; w < sample::wall_count; ++w) {
     EXPECT_EQ(a.walls[w].name, b.walls[w].name);
     EXPECT_EQ(a.walls[w].kind, b.walls[w].kind);
     EXPECT_EQ(a.walls[w].role, b.walls[w].role);
@@ -69,6 +69,13 @@ TEST_F(SnapshotFile, WhatIsKnownAboutTheRunComesBackExactly) {
     EXPECT_EQ(a.walls[w].point, b.walls[w].point);
     EXPECT_EQ(a.walls[w].axis, b.walls[w].axis);
     EXPECT_EQ(a.walls[w].radius, b.walls[w].radius);
+    EXPECT_EQ(a.walls[w].high_radius, b.walls[w].high_radius);
+    EXPECT_EQ(a.walls[w].hole_radius, b.walls[w].hole_radius);
+    EXPECT_EQ(a.walls[w].low, b.walls[w].low);
+    EXPECT_EQ(a.walls[w].high, b.walls[w].high);
+    EXPECT_EQ(a.walls[w].free_side, b.walls[w].free_side);
+    EXPECT_EQ(a.walls[w].sphere_centre, b.walls[w].sphere_centre);
+    EXPECT_EQ(a.walls[w].sphere_radius, b.walls[w].sphere_radius);
     EXPECT_EQ(a.walls[w].vertices, b.walls[w].vertices);
     EXPECT_EQ(a.walls[w].triangles, b.walls[w].triangles);
     EXPECT_EQ(a.walls[w].triangle_label, b.walls[w].triangle_label);
