@@ -144,21 +144,19 @@ inline Series series(std::size_t k) {
   const auto real = [&] { return static_cast<double>(random()) / 4294967296.0; };
   s.walls.resize(wall_count);
   for (std::size_t r = 1; r <= 4; ++r) {
-    s.step.push_back(40000 * (k - 1) + 10000 * r);
-    s.time.push_back(5e-8 * static_cast<double>(s.step.back()));
-    s.largest_compressive_force.push_back(static_cast<float>(real()));
-    s.jammed_count.push_back(static_cast<std::uint32_t>(random() % 10));
-    s.kinetic_energy.push_back(real());
-    s.largest_overlap.push_back(real());
-    for (auto& w : s.walls) {
-      schema::visit_wall_series(w, [&]<class V>(const schema::Item&, std::vector<V>& values) {
-        if constexpr (std::is_same_v<V, double>) {
-          values.push_back(real());
-        } else {
-          values.push_back(V(real(), real(), real()));
-        }
-      });
-    }
+    const auto fill = [&]<class V>(const schema::Item&, std::vector<V>& values) {
+      V value{};
+      if constexpr (std::is_arithmetic_v<V>) {
+        value = static_cast<V>(100 * real());
+      } else {
+        for (double& x : value) x = real();
+      }
+      values.push_back(value);
+    };
+    schema::visit_series(s, fill);
+    for (auto& w : s.walls) schema::visit_wall_series(w, fill);
+    s.step.back() = 40000 * (k - 1) + 10000 * r;
+    s.time.back() = 5e-8 * static_cast<double>(s.step.back());
   }
   return s;
 }
