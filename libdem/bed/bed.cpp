@@ -17,15 +17,27 @@
 namespace dem {
 namespace {
 
+static void debug_probe(const char* what, Setup setup, double step, const State& state) {
+  if (!getenv("BEDDBG")) return;
+  setup.step = step; setup.drag = 0;
+  RestProbe p = probe_rest(setup, state);
+  const auto c = contact_counts(p.view);
+  printf("  [%s] unsup %zu/%zu maxdisp %.3g free %.3g ke/rest %.3g zm %.3f z %.3f\n", what, p.unsupported, c.size(), p.largest_displacement, p.free_fall, p.kinetic_energy / p.rest_scale, mechanical_coordination(c), 2.0*p.view.pairs.size()/c.size());
+  fflush(stdout);
+}
 // Young's modulus while pouring, over the weight of the bed per area.
 constexpr double softness = 2e4;
 // The strongest contact of a packing carries some ten times the mean (forces fall off exponentially beyond it; Mueth, Jaeger,
 // Nagel, Phys. Rev. E 57 (1998) 3164).
 constexpr double strongest = 10;
+// Grains are poured from so many diameters above.
+constexpr double pouring_height = 25;
 // By how much the modulus grows from stage to stage, about.
 constexpr double stiffening = 5;
-constexpr double periods = 2, rest_periods = 2, least_steps = 5000;
-constexpr int most_rounds = 10;
+constexpr double periods = 2, least_steps = 8000;
+// Restitution of impacts after pouring: the bed shall come to rest.
+constexpr double inelastic = 0.3;
+constexpr int most_rounds = 20;
 
 Setup at_rest(const Setup& run) {
   Setup still = run;
@@ -35,7 +47,7 @@ Setup at_rest(const Setup& run) {
 
 // The run's setup with all bodies softened to at most `modulus`, adhesion scaled with E^(2/5), which keeps the speed below
 // which grains stick (Haervig et al., Powder Technol. 319 (2017) 377), walls at rest, and impacts that lose most energy.
-Setup softened(const Setup& run, double modulus) {
+Setup softened(const Setup& run, double modulus, double restitution) {
   Setup soft = at_rest(run);
   for (Material& m : soft.materials) m.young = std::min(m.young, modulus);
   for (std::size_t a = 0; a < run.materials.size(); ++a)
@@ -43,7 +55,7 @@ Setup softened(const Setup& run, double modulus) {
       const double ratio = effective_modulus(soft.materials[a], soft.materials[b]) /
                            effective_modulus(run.materials[a], run.materials[b]);
       soft.interactions[a][b].work_of_adhesion *= std::pow(ratio, 0.4);
-      soft.interactions[a][b].restitution = std::min(soft.interactions[a][b].restitution, 0.3);
+      soft.interactions[a][b].restitution = std::min(soft.interactions[a][b].restitution, restitution);
     }
   return soft;
 }
@@ -88,7 +100,22 @@ struct Stage {
   double step, drag;         // s, 1/s
   double shortest, longest;  // s; grains that begin to fall look as if they were at rest, so a stage must last a while
   double rest;               // J per grain; the stage ends when the mean kinetic energy stays below
+  double height = std::numeric_limits<double>::infinity();  // m, of the grains that count for that
 };
+
+// J, mean kinetic energy of the grains whose centre is not above `height`; 0 where there are none.
+double energy_below(const Simulation& sim, double height) {
+  const Particles& p = sim.particles();
+  double energy = 0, count = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.position[i].z() > height) continue;
+    const double mass = sim.setup().materials[p.material[i]].density * sphere_volume(p.radius[i]);
+    energy += 0.5 * mass * p.velocity[i].squaredNorm() +
+              0.5 * sphere_inertia(mass, p.radius[i]) * p.angular_velocity[i].squaredNorm();
+    ++count;
+  }
+  return count > 0 ? energy / count : 0;
+}
 
 struct Recipe {
   const std::function<void(const BedProgress&)>& progress;
@@ -115,8 +142,8 @@ struct Recipe {
     int calm = 0;
     while (sim.step() < total && calm < 3) {
       sim.advance(std::min(block, total - sim.step()));
-      const double energy = sim.kinetic_energy();
-      calm = sim.step() >= least && energy < stage.rest * double(grains) ? calm + 1 : 0;
+      const double energy = energy_below(sim, stage.height);
+      calm = sim.step() >= least && energy < stage.rest ? calm + 1 : 0;
       say({stage.name, sim.time(), stage.longest, grains, energy, sim.step()});
     }
     grain_steps += double(grains) * double(sim.step());
@@ -128,7 +155,7 @@ struct Recipe {
     const std::size_t grains = state.particles.size();
     const std::uint64_t steps = result.state.step;
     grain_steps += double(grains) * double(steps);
-    say({"probing", result.interval, result.interval, grains, result.kinetic_energy, steps});
+    say({"probing", result.interval, result.interval, grains, result.kinetic_energy / std::max(double(grains), 1.0), steps});
     return result;
   }
 };
@@ -231,44 +258,58 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, c
   const double soft = std::min(glass.young, std::max(softness * glass.density * gravity * bed.depth, 1e6));
   double top = 0;
   for (const Vec3& x : state.particles.position) top = std::max(top, x.z());
-  const double fall = std::sqrt(2 * std::max(top - bed.depth, d) / gravity);
-  const Setup loose = softened(setup, soft);
-  const double pouring_step = stable_step(loose, g, strongest * g.load(), gravity * fall);
-  state = recipe.run(loose, std::move(state), {"pouring", pouring_step, 1 / fall, fall, 20 * fall, rest});
+  // The suspension arrives as if it had been poured from somewhat higher up; the faster, the denser the bed.
+  const double speed = std::sqrt(2 * gravity * pouring_height * d);
+  const Vec3 down = setup.gravity / gravity;
+  for (Vec3& v : state.particles.velocity) v = speed * down;
+  const double drop = std::max(top - bed.depth, d), impact = std::sqrt(speed * speed + 2 * gravity * drop);
+  const double fall = (impact - speed) / gravity;
+  // Grains hit each other as they will in the run, so that the bed packs as it would when poured. What still jumps about
+  // above the cut does not matter.
+  const Setup falling = softened(setup, soft, 1);
+  const double pouring_step = stable_step(falling, g, strongest * g.load(), impact);
+  state = recipe.run(falling, std::move(state), {"pouring", pouring_step, 0, fall, 20 * fall + 1, 10 * rest, bed.depth});
+  debug_probe("poured", falling, pouring_step, state);
   state = cut(state, bed.depth);
   if (state.particles.size() == 0) throw CaseError("the bed is empty: no grain lies below its depth");
-  // Grains that lose a support roll on to the next one, some tens of milliseconds.
-  const double roll = 5 * std::sqrt(d / gravity);
-  const double calm_speed = 0.3 * std::sqrt(gravity * d);
-  state = recipe.run(loose, std::move(state),
-                     {"cutting", stable_step(loose, g, strongest * g.load(), calm_speed), 1 / roll, roll, 10 * roll, 0.1 * rest});
 
-  // Each time the modulus grows the old overlaps push the grains apart; they then sink by what the overlaps shrink.
+  // Grains that lose a support roll on to the next one, which takes them some tens of milliseconds. Drag must not hold them
+  // up: it stops what falls at g/drag, far above the speed of rolling over a tenth of a diameter.
+  const double roll = 5 * std::sqrt(d / gravity), drag = 1 / roll;
+  const double calm_speed = 0.3 * std::sqrt(gravity * d);
+  const Setup loose = softened(setup, soft, inelastic);
+  const double cutting_step = stable_step(loose, g, strongest * g.load(), calm_speed);
+  state = recipe.run(loose, std::move(state), {"cutting", cutting_step, drag, 0.5 * roll, 10 * roll, 0.1 * rest});
+  debug_probe("cut", loose, pouring_step, state);
+
   const int stages = int(std::ceil(std::log(glass.young / soft) / std::log(stiffening)));
   for (int k = 1; k <= stages; ++k) {
     const double modulus = k < stages ? soft * std::pow(glass.young / soft, double(k) / stages) : glass.young;
-    const Setup harder = softened(setup, modulus);
+    const Setup harder = softened(setup, modulus, inelastic);
+    const double shrink = std::pow(glass.young / soft, -2.0 / 3.0 / stages);
+    for (State::Pair& c : state.pairs) c.spring *= shrink;
+    for (State::WallPair& c : state.wall_pairs) c.spring *= shrink;
     const double step = stable_step(harder, g, stiffening * strongest * g.load(), calm_speed);
-    const double period = slowest_period(harder, g);
-    const double shortest = std::max(periods * period, std::min(roll, least_steps * step));
+    const double shortest = std::max(periods * slowest_period(harder, g), std::min(roll, least_steps * step));
     state = recipe.run(harder, std::move(state),
-                       {"stiffening to " + pressure(modulus), step, 4 / period, shortest, 3 * shortest, 0.01 * rest});
+                       {"stiffening to " + pressure(modulus), step, drag, shortest, 3 * shortest, 0.01 * rest});
+    debug_probe("stage", harder, step, state);
   }
 
   // At the true stiffness, adhesion and restitution.
   Setup still = at_rest(setup);
   still.step = stable_step(still, g, strongest * g.load(), calm_speed);
-  const double period = slowest_period(still, g);
+  Setup damped = softened(setup, glass.young, inelastic);
   RestProbe probe;
   for (int round = 0; round < most_rounds; ++round) {
-    const double length = std::max(rest_periods * period, 2000 * still.step);
-    state = recipe.run(still, std::move(state), {"resting", still.step, 4 / period, length, length, 0});
+    const double length = 4000 * still.step;
+    state = recipe.run(damped, std::move(state), {"resting", still.step, drag, length, length, 0});
     still.drag = 0;
     probe = recipe.probe(still, state);
     if (getenv("BEDDBG")) fprintf(stderr, "probe: unsup %zu maxdisp %g free %g ke %g rest %g step %g\n", probe.unsupported, probe.largest_displacement, probe.free_fall, probe.kinetic_energy, probe.rest_scale, still.step);
-    state = probe.state;
     if (probe.at_rest()) break;
   }
+  state = probe.state;
   if (!probe.at_rest()) refuse(probe);
 
   SettledBed result;

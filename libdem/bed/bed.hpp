@@ -16,8 +16,8 @@ struct BedProgress {
   std::string stage;         // "placing", "pouring", "cutting", "stiffening to 2.4 GPa", "resting", "probing"
   double time = 0, end = 0;  // s within the stage; it may be over before `end`
   std::size_t grains = 0;
-  double kinetic_energy = 0;      // J
-  std::uint64_t steps = 0;        // of this stage so far
+  double kinetic_energy = 0;  // J, mean of a grain
+  std::uint64_t steps = 0;    // of this stage so far
 };
 
 struct BedReport {
@@ -29,7 +29,7 @@ struct BedReport {
   double largest_overlap = 0;          // 1, over radius
   double top = 0;                      // m, highest grain centre
   // Of the probe that showed the bed at rest.
-  std::size_t unsupported = 0;      // grains; 0, or there would be no bed
+  std::size_t unsupported = 0;      // grains; at most one in a thousand, or there would be no bed
   double probe_interval = 0;        // s
   double largest_displacement = 0;  // m, of any grain over the probe
   double free_fall = 0;             // m, of an unsupported grain over the probe

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libdem/bed/packing.hpp"
 
@@ -10,6 +11,7 @@ namespace dem {
 RestProbe probe_rest(const Setup& setup, State state) {
   RestProbe probe;
   const std::size_t n = state.particles.size();
+  probe.grains = n;
   if (n == 0) {
     probe.rest_scale = std::numeric_limits<double>::min();
     return probe;
