@@ -185,6 +185,8 @@ void read_bed(Section bed, dem::Bed& b) {
   bed.quantity("mean_diameter", dimension::length, b.mean_diameter);
   bed.number("size_low", b.size_low);
   bed.number("size_high", b.size_high);
+  using Sizes = dem::Bed::Sizes;
+  bed.choice("sizes", {{"number", Sizes::by_number}, {"mass", Sizes::by_mass}}, b.sizes, optional);
   bed.quantity("depth", dimension::length, b.depth);
   bed.whole_number("seed", b.seed, optional);
   bed.finish();

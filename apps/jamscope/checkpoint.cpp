@@ -186,6 +186,22 @@ jam::Series read_series(const jam::h5::File& f) {
   return s;
 }
 
+// The numbers of a report with the names of their attributes, for writing and for reading.
+template <class Report, class Visit>
+void for_each_number(Report& r, Visit visit) {
+  visit("solid_fraction", r.solid_fraction);
+  visit("coordination", r.coordination);
+  visit("mechanical_coordination", r.mechanical_coordination);
+  visit("largest_overlap", r.largest_overlap);
+  visit("top_m", r.top);
+  visit("probe_interval_s", r.probe_interval);
+  visit("largest_displacement_m", r.largest_displacement);
+  visit("free_fall_m", r.free_fall);
+  visit("kinetic_energy_J", r.kinetic_energy);
+  visit("rest_scale_J", r.rest_scale);
+  visit("grain_steps", r.grain_steps);
+}
+
 void mark(jam::h5::File& f, const char* format, const std::string& key) {
   f.set_attribute("/", "format", format);
   f.set_attribute("/", "state_version", state_version);
@@ -265,7 +281,7 @@ void visit_numbers(const dem::MeshWall& s, F&& f) {
 
 }  // namespace
 
-std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, double vessel_radius) {
+std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, const dem::BedRegion& region) {
   std::string bytes = "bed recipe " + std::to_string(dem::bed_recipe) + ";";
   const auto number = [&bytes](double x) {
     char raw[sizeof x];
@@ -290,8 +306,13 @@ std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, double vessel_
     std::visit([&](const auto& shape) { visit_numbers(shape, number); }, w.shape);
   }
   vector(setup.gravity);
-  for (const double x : {setup.step, vessel_radius, bed.mean_diameter, bed.size_low, bed.size_high, bed.depth}) number(x);
-  bytes += bed.material + ";" + std::to_string(bed.seed) + ";law";
+  for (const double x : {bed.mean_diameter, bed.size_low, bed.size_high, bed.depth}) number(x);
+  number(double(region.index()));
+  if (const auto* circle = std::get_if<dem::CylinderRegion>(&region)) number(circle->radius);
+  if (const auto* box = std::get_if<dem::BoxRegion>(&region))
+    for (const double x : {box->x_low, box->x_high, box->y_low, box->y_high}) number(x);
+  bytes += bed.material + (bed.sizes == dem::Bed::Sizes::by_mass ? ";by mass;" : ";by number;") +
+           std::to_string(bed.seed) + ";law";
   const dem::LawChoice& law = setup.law;
   for (const std::uint8_t row : {law.normal, law.damping, law.friction, law.tangential, law.rolling}) number(row);
   return sha256_hex(bytes);
@@ -303,12 +324,9 @@ void write_bed(const std::string& path, const dem::SettledBed& bed, const std::s
   jam::h5::write_aside(path, [&](jam::h5::File& f) {
     mark(f, bed_format, key);
     const dem::BedReport& r = bed.report;
-    f.set_attribute("/", "solid_fraction", r.solid_fraction);
-    f.set_attribute("/", "coordination", r.coordination);
-    f.set_attribute("/", "kinetic_energy_J", r.kinetic_energy);
-    f.set_attribute("/", "rest_scale_J", r.rest_scale);
-    f.set_attribute("/", "largest_overlap", r.largest_overlap);
-    f.set_attribute("/", "top_m", r.top);
+    for_each_number(r, [&f](const char* name, const double& value) { f.set_attribute("/", name, value); });
+    f.set_attribute("/", "rattlers", std::uint64_t(r.rattlers));
+    f.set_attribute("/", "unsupported", std::uint64_t(r.unsupported));
     write_state(f, bed.state);
   });
 }
@@ -321,12 +339,9 @@ std::optional<dem::SettledBed> read_bed(const std::string& path, const std::stri
   bed.state = read_state(f);
   dem::BedReport& r = bed.report;
   r.grains = bed.state.particles.size();
-  r.solid_fraction = f.attribute<double>("/", "solid_fraction");
-  r.coordination = f.attribute<double>("/", "coordination");
-  r.kinetic_energy = f.attribute<double>("/", "kinetic_energy_J");
-  r.rest_scale = f.attribute<double>("/", "rest_scale_J");
-  r.largest_overlap = f.attribute<double>("/", "largest_overlap");
-  r.top = f.attribute<double>("/", "top_m");
+  for_each_number(r, [&f](const char* name, double& value) { value = f.attribute<double>("/", name); });
+  r.rattlers = f.attribute<std::uint64_t>("/", "rattlers");
+  r.unsupported = f.attribute<std::uint64_t>("/", "unsupported");
   return bed;
 }
 

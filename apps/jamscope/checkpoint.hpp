@@ -20,8 +20,8 @@ struct Checkpoint {
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint);
 Checkpoint read_checkpoint(const std::string& path);
 
-// Settled beds are kept under a name that is the SHA-256 of everything that determines them.
-std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, double vessel_radius);
+// Settled beds are kept under a name that is the SHA-256 of everything that determines them. The step of the run does not.
+std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, const dem::BedRegion& region);
 void write_bed(const std::string& path, const dem::SettledBed& bed, const std::string& key);
 // Nothing where there is no such file; throws jam::DataError where there is one that cannot be used.
 std::optional<dem::SettledBed> read_bed(const std::string& path, const std::string& key);

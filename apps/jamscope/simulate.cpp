@@ -37,16 +37,25 @@ std::uint64_t steps_in(double interval, double step) {
   return std::uint64_t(std::max(1.0, std::round(interval / step)));
 }
 
+std::string bed_text(const dem::BedReport& r) {
+  return fmt::format(
+      "{} grains, solid fraction {:.3f}, coordination {:.2f} ({:.2f} with walls and without {} rattlers), largest overlap "
+      "{:.2g} R, top at {:.2f} mm; at rest: set free for {:.2g} ms, {} grains are unsupported, none moved by more than {:.2g} um "
+      "(free fall: {:.2g} um), kinetic energy {:.2g} J (rest: below {:.2g} J)",
+      r.grains, r.solid_fraction, r.coordination, r.mechanical_coordination, r.rattlers, r.largest_overlap, 1e3 * r.top,
+      1e3 * r.probe_interval, r.unsupported, 1e6 * r.largest_displacement, 1e6 * r.free_fall, r.kinetic_energy, r.rest_scale);
+}
+
 dem::SettledBed settled_bed(const CaseFile& file, const dem::Rheometer& rheometer, const std::string& cache,
                             Console& console) {
   const dem::Case& c = file.physics;
-  const double vessel_radius = 0.5 * c.vessel.diameter;
-  const std::string key = bed_key(rheometer.setup, c.bed, vessel_radius);
+  const dem::CylinderRegion vessel{0.5 * c.vessel.diameter};
+  const std::string key = bed_key(rheometer.setup, c.bed, vessel);
   const std::string path = cache.empty() ? "" : (std::filesystem::path(cache) / ("bed-" + key.substr(0, 16) + ".h5")).string();
   if (!path.empty()) {
     try {
       if (auto bed = read_bed(path, key)) {
-        console.note(fmt::format("settled bed of {} grains from {}", bed->report.grains, path));
+        console.note(fmt::format("settled bed from {}: {}", path, bed_text(bed->report)));
         return *bed;
       }
     } catch (const jam::DataError& e) {
@@ -65,17 +74,13 @@ dem::SettledBed settled_bed(const CaseFile& file, const dem::Rheometer& rheomete
   };
   dem::SettledBed bed;
   try {
-    bed = dem::make_bed(rheometer.setup, c.bed, std::uint8_t(dem::material_index(c, c.bed.material)), vessel_radius,
-                        report, [] { return stop_requested(); });
+    bed = dem::make_bed(rheometer.setup, c.bed, std::uint8_t(dem::material_index(c, c.bed.material)), vessel, report,
+                        [] { return stop_requested(); });
   } catch (const dem::BedInterrupted&) {
     throw Interrupted{};
   }
-  const dem::BedReport& r = bed.report;
-  console.note(fmt::format(
-      "bed of {} grains settled in {}: solid fraction {:.3f}, coordination {:.2f}, kinetic energy {:.2g} J (rest: below "
-      "{:.2g} J), largest overlap {:.2g} R, top at {:.2f} mm",
-      r.grains, duration_text(seconds_since(begin)), r.solid_fraction, r.coordination, r.kinetic_energy, r.rest_scale,
-      r.largest_overlap, 1e3 * r.top));
+  console.note(fmt::format("bed settled in {}, {:.2g} grain steps: {}", duration_text(seconds_since(begin)),
+                           bed.report.grain_steps, bed_text(bed.report)));
   if (!path.empty()) {
     try {
       write_bed(path, bed, key);

@@ -4,90 +4,129 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
-#include <random>
 
+#include "libdem/bed/packing.hpp"
+#include "libdem/bed/rest.hpp"
+#include "libdem/bed/settling_step.hpp"
+#include "libdem/bed/suspension.hpp"
 #include "libdem/case/derived.hpp"
+#include "libdem/case/size_distribution.hpp"
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/errors.hpp"
 
 namespace dem {
 namespace {
 
-// [0, 1) from a 64-bit generator, the same on every platform (the standard's distributions are not).
-double uniform(std::mt19937_64& random) { return double(random() >> 11) * 0x1.0p-53; }
+// Young's modulus while pouring, over the weight of the bed per area.
+constexpr double softness = 2e4;
+// The strongest contact of a packing carries some ten times the mean (forces fall off exponentially beyond it; Mueth, Jaeger,
+// Nagel, Phys. Rev. E 57 (1998) 3164).
+constexpr double strongest = 10;
+// Grains are poured from so many diameters above.
+constexpr double pouring_height = 25;
+// By how much the modulus grows from stage to stage, about.
+constexpr double stiffening = 5;
+constexpr double periods = 2, least_steps = 8000;
+// Restitution of impacts after pouring: the bed shall come to rest.
+constexpr double inelastic = 0.3;
+constexpr int most_rounds = 20;
 
-// A loose column on a jittered cubic lattice, free of the walls.
-Particles loose_column(const Setup& setup, const Bed& bed, std::uint8_t material, double vessel_radius,
-                       std::size_t count) {
-  std::mt19937_64 random(bed.seed);
-  Particles grains;
-  const double largest = 0.5 * bed.size_high * bed.mean_diameter, cell = 2 * largest * 1.03;
-  const int across = int(vessel_radius / cell) + 1;
-  std::vector<WallTouch> touches;
-  std::vector<MeshTouch> scratch;
-  std::vector<std::uint32_t> triangles;
-  std::vector<WallPose> poses;
-  for (const Wall& w : setup.walls) poses.push_back(pose_at(w.motion, 0));
-  for (int layer = 0; grains.size() < count; ++layer) {
-    if (layer > 100000) throw CaseError("the bed does not fit into its vessel");
-    for (int a = -across; a <= across; ++a)
-      for (int b = -across; b <= across; ++b) {
-        // Every cell draws the same numbers whether it is used or not, so that one grain more or less changes no other.
-        const double size = bed.size_low + (bed.size_high - bed.size_low) * uniform(random);
-        const double radius = 0.5 * bed.mean_diameter * size, play = largest * 1.03 - radius;
-        const Vec3 jitter(2 * uniform(random) - 1, 2 * uniform(random) - 1, 2 * uniform(random) - 1);
-        const double shift = layer % 2 ? 0.25 : -0.25;
-        const Vec3 x = Vec3((a + shift) * cell, (b + shift) * cell, (layer + 0.5) * cell) + play * jitter;
-        if (std::hypot(x.x(), x.y()) + radius > vessel_radius) continue;
-        bool free = true;
-        for (std::size_t w = 0; w < setup.walls.size() && free; ++w) {
-          triangles.clear();
-          candidate_parts(setup.walls[w], poses[w], x, radius, triangles);
-          nearest(setup.walls[w], poses[w], x, radius, triangles, touches, scratch);
-          free = touches.empty() && !inside_material(setup.walls[w], poses[w], x);
-        }
-        if (!free || grains.size() >= count) continue;
-        grains.add(std::uint32_t(grains.size() + 1), material, radius, x);
-      }
-  }
-  return grains;
+Setup at_rest(const Setup& run) {
+  Setup still = run;
+  for (Wall& w : still.walls) w.motion = resting_at(w.motion, 0);
+  return still;
 }
 
 // The run's setup with all bodies softened to at most `modulus`, adhesion scaled with E^(2/5), which keeps the speed below
 // which grains stick (Haervig et al., Powder Technol. 319 (2017) 377), walls at rest, and impacts that lose most energy.
-Setup softened(const Setup& run, double modulus) {
-  Setup soft = run;
+Setup softened(const Setup& run, double modulus, double restitution) {
+  Setup soft = at_rest(run);
   for (Material& m : soft.materials) m.young = std::min(m.young, modulus);
   for (std::size_t a = 0; a < run.materials.size(); ++a)
     for (std::size_t b = 0; b < run.materials.size(); ++b) {
       const double ratio = effective_modulus(soft.materials[a], soft.materials[b]) /
                            effective_modulus(run.materials[a], run.materials[b]);
       soft.interactions[a][b].work_of_adhesion *= std::pow(ratio, 0.4);
-      soft.interactions[a][b].restitution = std::min(soft.interactions[a][b].restitution, 0.3);
+      soft.interactions[a][b].restitution = std::min(soft.interactions[a][b].restitution, restitution);
     }
-  for (Wall& w : soft.walls) w.motion = resting_at(w.motion, 0);
   return soft;
+}
+
+// What the recipe needs to know of the grains.
+struct Grains {
+  std::size_t material;
+  double small, large, mean;  // m, radii; `mean` over the grains
+  double density, gravity, depth;
+  double mass(double radius) const { return density * sphere_volume(radius); }
+  // N, mean force of a contact at the bottom of the bed, from its weight per area and one force chain per diameter squared.
+  double load() const { return 0.6 * density * gravity * depth * 4 * mean * mean; }
+};
+
+// Largest stable step, s, for the smallest grain against grains and all walls, under a contact force and at a speed of impact.
+double stable_step(const Setup& setup, const Grains& g, double force, double speed) {
+  double step = std::numeric_limits<double>::infinity();
+  const Material& grain = setup.materials[g.material];
+  const auto consider = [&](std::size_t other, double effective_radius) {
+    const Material& body = setup.materials[other];
+    const double modulus = effective_modulus(grain, body), mass = g.mass(g.small);
+    const double most = std::max(force, impact_force(speed, mass, effective_radius, modulus));
+    const double stiffness =
+        stiffness_under(most, setup.interactions[g.material][other].work_of_adhesion, effective_radius, modulus);
+    step = std::min(step, settling_step(mass, stiffness, 4 * effective_shear_modulus(grain, body) / modulus));
+  };
+  consider(g.material, harmonic(g.small, g.large));
+  for (const Wall& w : setup.walls) consider(w.material, g.small);
+  return step;
+}
+
+// Period of the slowest vibration of the bed, s: four times what sound takes through it, one diameter in sqrt(m/k).
+double slowest_period(const Setup& setup, const Grains& g) {
+  const Material& grain = setup.materials[g.material];
+  const double stiffness = stiffness_under(g.load(), setup.interactions[g.material][g.material].work_of_adhesion,
+                                           0.5 * g.mean, effective_modulus(grain, grain));
+  return 4 * (g.depth / (2 * g.mean) + 1) * std::sqrt(g.mass(g.mean) / stiffness);
 }
 
 struct Stage {
   std::string name;
   double step, drag;         // s, 1/s
   double shortest, longest;  // s; grains that begin to fall look as if they were at rest, so a stage must last a while
-  double rest;               // J, the stage ends when the kinetic energy stays below
+  double rest;               // J per grain; the stage ends when the mean kinetic energy stays below
+  double height = std::numeric_limits<double>::infinity();  // m, of the grains that count for that
 };
+
+// J, mean kinetic energy of the grains whose centre is not above `height`; 0 where there are none.
+double energy_below(const Simulation& sim, double height) {
+  const Particles& p = sim.particles();
+  double energy = 0, count = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.position[i].z() > height) continue;
+    const double mass = sim.setup().materials[p.material[i]].density * sphere_volume(p.radius[i]);
+    energy += 0.5 * mass * p.velocity[i].squaredNorm() +
+              0.5 * sphere_inertia(mass, p.radius[i]) * p.angular_velocity[i].squaredNorm();
+    ++count;
+  }
+  return count > 0 ? energy / count : 0;
+}
 
 struct Recipe {
   const std::function<void(const BedProgress&)>& progress;
   const std::function<bool()>& interrupted;
+  double grain_steps = 0;
+
+  void say(const BedProgress& where) const {
+    if (progress) progress(where);
+    if (interrupted && interrupted()) throw BedInterrupted("interrupted while the bed was settling");
+  }
 
   // Runs one stage from the given grains and contacts; returns where it ended.
-  State run(Setup setup, State state, const Stage& stage) const {
+  State run(Setup setup, State state, const Stage& stage) {
     setup.step = stage.step;
     setup.drag = stage.drag;
     state.step = 0;
     state.force.clear();
     state.torque.clear();
+    const std::size_t grains = state.particles.size();
     Simulation sim(std::move(setup), std::move(state));
     const std::uint64_t total = std::uint64_t(std::ceil(stage.longest / stage.step));
     const std::uint64_t least = std::uint64_t(stage.shortest / stage.step);
@@ -95,12 +134,21 @@ struct Recipe {
     int calm = 0;
     while (sim.step() < total && calm < 3) {
       sim.advance(std::min(block, total - sim.step()));
-      const double energy = sim.kinetic_energy();
+      const double energy = energy_below(sim, stage.height);
       calm = sim.step() >= least && energy < stage.rest ? calm + 1 : 0;
-      if (progress) progress({stage.name, sim.time(), stage.longest, sim.particles().size(), energy});
-      if (interrupted && interrupted()) throw BedInterrupted("interrupted while the bed was settling");
+      say({stage.name, sim.time(), stage.longest, grains, energy, sim.step()});
     }
+    grain_steps += double(grains) * double(sim.step());
     return sim.state();
+  }
+
+  RestProbe probe(const Setup& setup, const State& state) {
+    RestProbe result = probe_rest(setup, state);
+    const std::size_t grains = state.particles.size();
+    const std::uint64_t steps = result.state.step;
+    grain_steps += double(grains) * double(steps);
+    say({"probing", result.interval, result.interval, grains, result.kinetic_energy / std::max(double(grains), 1.0), steps});
+    return result;
   }
 };
 
@@ -128,20 +176,6 @@ State cut(const State& state, double height) {
   return kept;
 }
 
-// Share of the slice [low, high] of the vessel that spheres fill; exact for each sphere by its two caps.
-double solid_fraction(const Particles& p, double vessel_radius, double low, double high) {
-  if (!(high > low)) return 0;
-  double volume = 0;
-  // Volume of the part of a sphere below z: pi h^2 (3R - h)/3 with h its depth.
-  const auto below = [](double radius, double centre, double z) {
-    const double h = std::clamp(z - (centre - radius), 0.0, 2 * radius);
-    return std::numbers::pi * h * h * (3 * radius - h) / 3;
-  };
-  for (std::size_t i = 0; i < p.size(); ++i)
-    volume += below(p.radius[i], p.position[i].z(), high) - below(p.radius[i], p.position[i].z(), low);
-  return volume / (std::numbers::pi * vessel_radius * vessel_radius * (high - low));
-}
-
 std::string pressure(double value) {
   std::array<char, 32> text{};
   if (value >= 1e9)
@@ -151,88 +185,124 @@ std::string pressure(double value) {
   return text.data();
 }
 
+[[noreturn]] void refuse(const RestProbe& probe) {
+  const View& v = probe.view;
+  const Vec3& x = v.position[probe.worst];
+  const std::vector<std::uint32_t> contacts = contact_counts(v);
+  std::array<char, 400> text{};
+  std::snprintf(text.data(), text.size(),
+                "the bed is not at rest: %zu of %zu grains are not supported, the worst, grain %u at (%.4g, %.4g, %.4g) mm with "
+                "%u contacts, moved by %.3g um in %.3g ms, in which it would fall freely by %.3g um; kinetic energy %.3g J, "
+                "expected below %.3g J",
+                probe.unsupported, v.id.size(), v.id[probe.worst], 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z(),
+                contacts[probe.worst], 1e6 * probe.largest_displacement, 1e3 * probe.interval, 1e6 * probe.free_fall,
+                probe.kinetic_energy, probe.rest_scale);
+  throw PhysicsError(text.data());
+}
+
+BedReport report_on(const RestProbe& probe, const BedRegion& region, const Bed& bed) {
+  const View& view = probe.view;
+  const double d = bed.mean_diameter;
+  BedReport r;
+  r.grains = view.id.size();
+  r.solid_fraction = solid_fraction(probe.state.particles, region, d, bed.depth - d);
+  r.coordination = 2.0 * double(view.pairs.size()) / double(view.id.size());
+  const std::vector<std::uint32_t> contacts = contact_counts(view);
+  r.mechanical_coordination = mechanical_coordination(contacts);
+  r.rattlers = std::size_t(std::count_if(contacts.begin(), contacts.end(), [](std::uint32_t c) { return c < 2; }));
+  for (const PairRecord& c : view.pairs)
+    r.largest_overlap = std::max(r.largest_overlap, c.overlap / std::min(view.radius[c.i], view.radius[c.j]));
+  for (const WallRecord& c : view.wall_pairs)
+    r.largest_overlap = std::max(r.largest_overlap, c.overlap / view.radius[c.i]);
+  for (const Vec3& x : view.position) r.top = std::max(r.top, x.z());
+  r.unsupported = probe.unsupported;
+  r.probe_interval = probe.interval;
+  r.largest_displacement = probe.largest_displacement;
+  r.free_fall = probe.free_fall;
+  r.kinetic_energy = probe.kinetic_energy;
+  r.rest_scale = probe.rest_scale;
+  return r;
+}
+
 }  // namespace
 
-SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, double vessel_radius,
+SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, const BedRegion& region,
                     const std::function<void(const BedProgress&)>& progress,
                     const std::function<bool()>& interrupted) {
   const Material& glass = setup.materials[material];
-  const double d = bed.mean_diameter, smallest = 0.5 * bed.size_low * d, gravity = setup.gravity.norm();
+  const double d = bed.mean_diameter, gravity = setup.gravity.norm();
   if (!(gravity > 0)) throw CaseError("a bed settles under gravity; it is zero here");
-  // E[(d_i/d)^3] of a uniform distribution.
-  const double moment = (std::pow(bed.size_high, 4) - std::pow(bed.size_low, 4)) / 4 /
-                        std::max(bed.size_high - bed.size_low, 1e-12);
-  const double mean_volume = sphere_volume(0.5 * d) * (bed.size_high > bed.size_low ? moment : std::pow(bed.size_low, 3));
-  const double bed_volume = std::numbers::pi * vessel_radius * vessel_radius * (bed.depth + 1.5 * d);
-  const double wanted = 0.66 * bed_volume / mean_volume;
+  const Grains g{material, 0.5 * bed.size_low * d, 0.5 * bed.size_high * d, 0.5 * mean_size(bed) * d, glass.density,
+                 gravity, std::max(bed.depth, d)};
+  // So many that the densest random packing would still reach the cut.
+  const double mean_volume = sphere_volume(0.5 * d) * mean_cubed_size(bed);
+  const double wanted = 0.64 * cross_section(region) * (bed.depth + d) / mean_volume;
   if (!(wanted >= 1)) throw CaseError("the bed is empty: a depth of " + std::to_string(bed.depth * 1e3) + " mm holds no grain");
-  const std::size_t count = std::size_t(wanted);
 
-  const Recipe recipe{progress, interrupted};
-  const double grain_mass = glass.density * mean_volume;
-  const double rest = 1e-3 * double(count) * grain_mass * gravity * d;
-  // Soft enough for a large step, stiff enough that the weight of the bed presses grains by a few thousandths of a diameter.
-  const double soft = std::min(glass.young, std::max(2e4 * glass.density * gravity * bed.depth, 1e6));
-  const auto step_at = [&](double modulus) {
-    Material m = glass;
-    m.young = std::min(modulus, glass.young);
-    return 0.15 * rayleigh_time(m, smallest);
-  };
-
+  Recipe recipe{progress, interrupted};
   State state;
-  state.particles = loose_column(setup, bed, material, vessel_radius, count);
+  state.particles = random_suspension(setup, bed, material, region, std::size_t(wanted), interrupted);
+  recipe.say({"placing", 0, 0, state.particles.size(), 0, 0});
+
+  // J, per grain: a grain that has it moves at sqrt(2 g d/1000), some millimetres per second.
+  const double rest = 1e-3 * g.mass(g.mean) * gravity * d;
+  // Soft enough for a large step, stiff enough that the weight of the bed presses grains by a thousandth of a diameter.
+  const double soft = std::min(glass.young, std::max(softness * glass.density * gravity * bed.depth, 1e6));
   double top = 0;
   for (const Vec3& x : state.particles.position) top = std::max(top, x.z());
-  const double fall = std::sqrt(2 * top / gravity);
-  state = recipe.run(softened(setup, soft), std::move(state), {"pouring", step_at(soft), 2 / fall, fall, 6 * fall, rest});
+  // The suspension arrives as if it had been poured from somewhat higher up; the faster, the denser the bed.
+  const double speed = std::sqrt(2 * gravity * pouring_height * d);
+  const Vec3 down = setup.gravity / gravity;
+  for (Vec3& v : state.particles.velocity) v = speed * down;
+  const double drop = std::max(top - bed.depth, d), impact = std::sqrt(speed * speed + 2 * gravity * drop);
+  const double fall = (impact - speed) / gravity;
+  // Grains hit each other as they will in the run, so that the bed packs as it would when poured. What still jumps about
+  // above the cut does not matter.
+  const Setup falling = softened(setup, soft, 1);
+  const double pouring_step = stable_step(falling, g, strongest * g.load(), impact);
+  state = recipe.run(falling, std::move(state), {"pouring", pouring_step, 0, fall, 20 * fall + 1, 10 * rest, bed.depth});
   state = cut(state, bed.depth);
-  const double layers = bed.depth / d + 1;
-  state = recipe.run(softened(setup, soft), std::move(state),
-                     {"cutting", step_at(soft), 2 / fall, 0.3 * fall, 2 * fall, 0.1 * rest});
+  if (state.particles.size() == 0) throw CaseError("the bed is empty: no grain lies below its depth");
 
-  // Each time the modulus grows tenfold the old overlaps push the grains apart; they then sink by what the overlaps shrink.
-  double overlap = d * std::pow(glass.density * gravity * bed.depth / soft, 2.0 / 3.0);
-  for (double modulus = soft; modulus < glass.young;) {
-    modulus = std::min(10 * modulus, glass.young);
-    const double sink = 4 * std::sqrt(2 * overlap * layers / gravity);
-    const double step = modulus < glass.young ? step_at(modulus) : std::min(step_at(modulus), setup.step);
-    // Grains that lose a support roll on to the next one, which takes them about 20 ms; while steps are cheap they get it.
-    const double shortest = std::max(0.5 * sink, std::min(20e-3, 20000 * step));
-    state = recipe.run(softened(setup, modulus), std::move(state),
-                       {"stiffening to " + pressure(modulus), step, 4 / sink, shortest, std::max(sink, 1.5 * shortest), 0.01 * rest});
-    overlap *= std::pow(10, -2.0 / 3.0);
+  // Grains that lose a support roll on to the next one, which takes them some tens of milliseconds. Drag must not hold them
+  // up: it stops what falls at g/drag, far above the speed of rolling over a tenth of a diameter.
+  const double roll = 5 * std::sqrt(d / gravity), drag = 1 / roll;
+  const double calm_speed = 0.3 * std::sqrt(gravity * d);
+  const Setup loose = softened(setup, soft, inelastic);
+  const double cutting_step = stable_step(loose, g, strongest * g.load(), calm_speed);
+  state = recipe.run(loose, std::move(state), {"cutting", cutting_step, drag, 0.5 * roll, 10 * roll, 0.1 * rest});
+
+  const int stages = int(std::ceil(std::log(glass.young / soft) / std::log(stiffening)));
+  for (int k = 1; k <= stages; ++k) {
+    const double modulus = k < stages ? soft * std::pow(glass.young / soft, double(k) / stages) : glass.young;
+    const Setup harder = softened(setup, modulus, inelastic);
+    const double shrink = std::pow(glass.young / soft, -2.0 / 3.0 / stages);
+    for (State::Pair& c : state.pairs) c.spring *= shrink;
+    for (State::WallPair& c : state.wall_pairs) c.spring *= shrink;
+    const double step = stable_step(harder, g, stiffening * strongest * g.load(), calm_speed);
+    const double shortest = std::max(periods * slowest_period(harder, g), std::min(roll, least_steps * step));
+    state = recipe.run(harder, std::move(state),
+                       {"stiffening to " + pressure(modulus), step, drag, shortest, 3 * shortest, 0.01 * rest});
   }
-  // At the true stiffness, adhesion and restitution: long enough for a grain without support to fall by micrometres, much
-  // more than the overlaps that are left.
-  Setup still = setup;
-  for (Wall& w : still.walls) w.motion = resting_at(w.motion, 0);
-  state = recipe.run(still, std::move(state), {"resting", setup.step, 2e3, 1e-3, 2e-3, 0.01 * rest});
+
+  // At the true stiffness, adhesion and restitution.
+  Setup still = at_rest(setup);
+  still.step = stable_step(still, g, strongest * g.load(), calm_speed);
+  Setup damped = softened(setup, glass.young, inelastic);
+  RestProbe probe;
+  for (int round = 0; round < most_rounds; ++round) {
+    const double length = 4000 * still.step;
+    state = recipe.run(damped, std::move(state), {"resting", still.step, drag, length, length, 0});
+    still.drag = 0;
+    probe = recipe.probe(still, state);
+    if (probe.at_rest()) break;
+  }
+  state = probe.state;
+  if (!probe.at_rest()) refuse(probe);
 
   SettledBed result;
-  still.step = setup.step;
-  still.drag = 0;
-  State probe = state;
-  probe.step = 0;
-  probe.force.clear();
-  probe.torque.clear();
-  Simulation check(still, std::move(probe));
-  const View view = check.view();
-  result.report.grains = view.id.size();
-  if (result.report.grains == 0) throw CaseError("the bed is empty: no grain lies below its depth");
-  result.report.coordination = 2.0 * double(view.pairs.size()) / double(view.id.size());
-  result.report.kinetic_energy = check.kinetic_energy();
-  result.report.rest_scale = 1e-3 * double(view.id.size()) * grain_mass * gravity * d;
-  for (const PairRecord& c : view.pairs)
-    result.report.largest_overlap = std::max(result.report.largest_overlap, c.overlap / std::min(view.radius[c.i], view.radius[c.j]));
-  result.report.solid_fraction = solid_fraction(state.particles, vessel_radius, d, bed.depth - d);
-  for (const Vec3& x : view.position) result.report.top = std::max(result.report.top, x.z());
-  if (!(result.report.kinetic_energy < result.report.rest_scale)) {
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "the bed is not at rest: %zu grains hold %.3g J of kinetic energy, expected below %.3g J",
-                  result.report.grains, result.report.kinetic_energy, result.report.rest_scale);
-    throw PhysicsError(text.data());
-  }
+  result.report = report_on(probe, region, bed);
+  result.report.grain_steps = recipe.grain_steps;
   for (Vec3& v : state.particles.velocity) v.setZero();
   for (Vec3& w : state.particles.angular_velocity) w.setZero();
   for (State::Pair& c : state.pairs) c.birth_step = 0;

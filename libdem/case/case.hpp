@@ -38,14 +38,18 @@ struct ContactModel {
   bool wall_curvature = false;
 };
 
-// A bed of spheres, diameters uniform by number in [size_low, size_high] * mean_diameter, poured, settled, relaxed at
-// the true stiffness and cut at `depth`.
+// A bed of spheres, diameters uniform by number or by mass in [size_low, size_high] * mean_diameter
+// (libdem/case/size_distribution.hpp), poured, settled, relaxed at the true stiffness and cut at `depth`.
 struct Bed {
+  // What is uniform over the diameters: how many grains have them, or what those grains weigh together.
+  enum class Sizes { by_number, by_mass };
+
   std::string material;
-  double mean_diameter = 0;  // m
+  double mean_diameter = 0;  // m, mean of the uniform distribution: over the grains, or over their mass
   double size_low = 0.8, size_high = 1.2;
   double depth = 0;  // m, height of the cut above the vessel floor
   std::uint64_t seed = 1;
+  Sizes sizes = Sizes::by_number;
 };
 
 struct Vessel {

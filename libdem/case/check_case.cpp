@@ -85,8 +85,9 @@ bool check_bed(const Case& c, Checker& check) {
 
   const double largest = c.bed.size_high * c.bed.mean_diameter;
   if (c.bed.size_low + c.bed.size_high < 1.98 || c.bed.size_low + c.bed.size_high > 2.02)
-    check.warn("bed.size_low", "and size_high are not symmetric about 1, so mean_diameter is not the mean: it is " +
-                                   text((c.bed.size_low + c.bed.size_high) / 2) + " times that");
+    check.warn("bed.size_low", "and size_high are not symmetric about 1, so mean_diameter is not the mean" +
+                                   (c.bed.sizes == Bed::Sizes::by_mass ? std::string(" by mass") : std::string()) +
+                                   ": it is " + text((c.bed.size_low + c.bed.size_high) / 2) + " times that");
   if (c.bed.depth < largest) {
     check.refuse("bed.depth",
                  "leaves no bed: " + text(c.bed.depth) + " m is less than one grain of " + text(largest) + " m");

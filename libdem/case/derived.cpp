@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libdem/case/size_distribution.hpp"
+
 namespace dem {
 
 using std::numbers::pi;
@@ -72,13 +74,12 @@ Derived derive(const Case& c, double tip) {
   const double mean = c.bed.mean_diameter, a = c.bed.size_low, b = c.bed.size_high, radius = mean / 2;
   d.smallest_diameter = a * mean;
   d.largest_diameter = b * mean;
-  d.d90 = (a + 0.9 * (b - a)) * mean;
+  d.d90 = size_quantile(c.bed, 0.9) * mean;
   d.gap_over_mean = d.gap / mean;
   d.gap_over_d90 = d.gap / d.d90;
   d.mean_mass = grain.density * pi / 6 * mean * mean * mean;
-  const double cube = (a + b) * (a * a + b * b) / 4;  // <x^3>, also where a = b
   const double bed_volume = pi / 4 * c.vessel.diameter * c.vessel.diameter * c.bed.depth;
-  const double grains_if_solid = bed_volume / (cube * pi / 6 * mean * mean * mean);
+  const double grains_if_solid = bed_volume / (mean_cubed_size(c.bed) * pi / 6 * mean * mean * mean);
   d.grains_loose = 0.56 * grains_if_solid;
   d.grains = 0.60 * grains_if_solid;
   d.grains_dense = 0.64 * grains_if_solid;

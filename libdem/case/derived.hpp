@@ -47,8 +47,8 @@ struct Derived {
   double gap_over_mean = 0;  // gap / mean diameter
   double gap_over_d90 = 0;   // gap / D90 by number
 
-  // Grains. A uniform distribution by number of x = d / mean in [a, b] has <x^3> = (b^4 - a^4) / (4 (b - a)).
-  double smallest_diameter = 0, largest_diameter = 0, d90 = 0;  // m
+  // Grains; moments and quantiles of their sizes from libdem/case/size_distribution.hpp.
+  double smallest_diameter = 0, largest_diameter = 0, d90 = 0;  // m, D90 by number: 90 % of the grains are smaller
   double mean_mass = 0;                                         // kg, of a grain of mean diameter
   double grains = 0, grains_loose = 0, grains_dense = 0;        // at solid fractions 0.60, 0.56 and 0.64
 
