@@ -47,6 +47,7 @@ constexpr std::tuple wall_pair_columns{
     Column{"contact_radius", &WallPair::contact_radius, "m", "contact radius"},
     Column{"rolling", &WallPair::rolling, "N m", "elastic rolling torque on the grain"},
     Column{"distance", &WallPair::distance, "m", "from the grain's centre to the wall"},
+    Column{"curvature", &WallPair::curvature, "1/m", "principal curvatures of the wall, > 0 where it is hollow"},
 };
 // Of the evaluation before; the ledger needs them.
 constexpr std::tuple last_columns{
@@ -315,6 +316,7 @@ std::string bed_key(const dem::Setup& setup, const dem::Bed& bed, const dem::Bed
            std::to_string(bed.seed) + ";law";
   const dem::LawChoice& law = setup.law;
   for (const std::uint8_t row : {law.normal, law.damping, law.friction, law.tangential, law.rolling}) number(row);
+  number(double(setup.wall_curvature));
   return sha256_hex(bytes);
 }
 

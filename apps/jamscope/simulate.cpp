@@ -69,6 +69,7 @@ dem::SettledBed settled_bed(const CaseFile& file, const dem::Rheometer& rheomete
     if (!console.due()) return;
     progress.stage = "bed: " + p.stage;
     progress.done = p.time;
+    progress.step = p.steps;
     progress.total = p.end;
     console.progress(progress);
   };

@@ -331,6 +331,20 @@ void inherit(WallCandidate& candidate, const std::vector<WallTouch>& touches, En
     if (!taken[o] && old[o].memory.touched) ended(old[o]);
 }
 
+PairConstants<double> constants_of(const ForceInput& in, const WallCandidate& candidate, const WallContact& contact) {
+  return in.wall_curvature ? on_curved_wall(candidate.constants, contact.touch.curvature) : candidate.constants;
+}
+
+// m, the overlap below which no contact of the candidate can hold, however its wall is curved.
+template <class Law>
+double last_overlap(const Law& law, const ForceInput& in, const WallCandidate& candidate) {
+  if (!in.wall_curvature) return last_overlap(law, candidate.constants);
+  PairConstants<double> most = candidate.constants;
+  most.effective_radius *= conforming;
+  most.adhesion_length *= std::cbrt(conforming);
+  return last_overlap(law, most);
+}
+
 struct WallSlot {
   WallCandidate* candidate;
   WallContact* contact;
@@ -350,6 +364,12 @@ void evaluate_wall_block(const Law& law, const ForceInput& in, WallContacts& wal
   c.effective_mass = gather([&](std::size_t k) { return slot[k].candidate->constants.effective_mass; });
   c.effective_inertia = gather([&](std::size_t k) { return slot[k].candidate->constants.effective_inertia; });
   c.adhesion_length = gather([&](std::size_t k) { return slot[k].candidate->constants.adhesion_length; });
+  if (in.wall_curvature)
+    for (std::size_t k = 0; k < pack_width; ++k) {
+      const PairConstants<double> curved = constants_of(in, *slot[k].candidate, *slot[k].contact);
+      c.effective_radius[k] = curved.effective_radius;
+      c.adhesion_length[k] = curved.adhesion_length;
+    }
 
   const Pack radius = gather([&](std::size_t k) { return p.radius[i(k)]; });
   Touch<Pack> touch;
@@ -425,8 +445,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
   for (std::uint32_t q = chunk.begin; q < chunk.end; ++q) {
     WallCandidate& candidate = walls.candidate[q];
     const double radius = p.radius[candidate.particle];
-    const double last = last_overlap(law, candidate.constants);
-    nearest(wall, pose, p.position[candidate.particle], radius - last,
+    nearest(wall, pose, p.position[candidate.particle], radius - last_overlap(law, in, candidate),
             std::span(walls.triangles).subspan(candidate.triangle_begin, candidate.triangle_end - candidate.triangle_begin),
             touches, chunk.scratch);
     if (touches.empty() && candidate.size == 0) continue;  // acts is 0 already
@@ -435,7 +454,8 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       touches.resize(WallCandidate::capacity);
     }
     inherit(candidate, touches, [&](const WallContact& ended) {
-      if constexpr (Keep) book_end(law, ended, candidate.constants, p, candidate.particle, in.dt, chunk.ledger);
+      if constexpr (Keep)
+        book_end(law, ended, constants_of(in, candidate, ended), p, candidate.particle, in.dt, chunk.ledger);
     });
     walls.acts[q] = 0;
     for (std::size_t t = 0; t < candidate.size; ++t) {

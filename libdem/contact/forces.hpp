@@ -12,6 +12,7 @@ struct ForceInput {
   const std::vector<WallPose>& poses;  // [walls]
   double dt;                           // s, by how much tangential springs advance; 0 to look without stepping
   std::uint64_t step;
+  bool wall_curvature = false;  // walls' curvature enters the effective radius; else they are flat where they are touched
 };
 
 // Evaluates all contacts with the law; memory, results and, where one is kept, the ledger sums of the stores' chunks change.

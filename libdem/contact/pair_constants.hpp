@@ -1,5 +1,7 @@
 // The constants of a contact from materials and bodies: each formula once.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -53,6 +55,23 @@ inline PairConstants<double> wall_constants(const PairConstants<double>& materia
   c.effective_inertia = a.inertia;
   c.adhesion_length = adhesion_length(c.work_of_adhesion, c.effective_radius, c.effective_modulus);
   return c;
+}
+
+// Of wall_constants(), for a wall of principal curvatures k1, k2 (1/m, > 0 hollow towards the sphere) at the contact: the
+// bodies' relative curvatures are 1/R - k1 and 1/R - k2, and R* = 1/sqrt((1/R - k1)(1/R - k2)), which is exact to first order
+// in the difference of the two (Johnson, Contact Mechanics, section 4.2; for a grain in a vessel of 27 grain radii the force at
+// an overlap is exact to 1e-5). A hollow nearly as narrow as the sphere conforms to it and is no contact at a point: R* stops
+// at `conforming` R.
+inline constexpr double conforming = 10;
+inline PairConstants<double> on_curved_wall(PairConstants<double> flat, const std::array<double, 2>& curvature) {
+  if (curvature[0] == 0 && curvature[1] == 0) return flat;
+  const double radius = flat.effective_radius;
+  const double a = 1 - radius * curvature[0], b = 1 - radius * curvature[1];
+  constexpr double least = 1 / (conforming * conforming);
+  const double ratio = 1 / std::sqrt(a > 0 && b > 0 ? std::max(a * b, least) : least);
+  flat.effective_radius *= ratio;
+  flat.adhesion_length *= std::cbrt(ratio);
+  return flat;
 }
 
 }  // namespace dem

@@ -27,6 +27,7 @@ Rheometer make_rheometer(const Case& c) {
   setup.materials = c.materials;
   setup.interactions = c.interactions;
   setup.law = choose_law(c.contact);
+  setup.wall_curvature = c.contact.wall_curvature;
   setup.keep_ledger = c.output.energy_ledger;
   setup.gravity = c.gravity;
   setup.step = c.step;

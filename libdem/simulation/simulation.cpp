@@ -116,7 +116,7 @@ struct Simulation::Engine {
 
   void evaluate(double dt) {
     const double overlap =
-        evaluate_contacts(setup.law, setup.keep_ledger, {p, materials, setup.walls, poses, dt, step}, pairs, walls);
+        evaluate_contacts(setup.law, setup.keep_ledger, {p, materials, setup.walls, poses, dt, step, setup.wall_curvature}, pairs, walls);
     window.largest_overlap = std::max(window.largest_overlap, overlap);
     if (setup.keep_ledger && dt > 0) {
       for (const PairContacts::Chunk& chunk : pairs.chunk) spent += chunk.ledger;
@@ -255,6 +255,7 @@ struct Simulation::Engine {
       contact.touch.feature = stored.feature;
       contact.touch.normal = stored.normal;
       contact.touch.distance = stored.distance;
+      contact.touch.curvature = stored.curvature;
       contact.memory = {stored.spring, stored.contact_radius, stored.birth_step, true};
       contact.rolling = stored.rolling;
       if (goes_on) contact.last = state.ledger.wall_pairs[k];
@@ -458,7 +459,7 @@ State Simulation::state() const {
         const WallContact& w = c.contact[q];
         if (!w.memory.touched) continue;
         state.wall_pairs.push_back({i, c.wall, w.touch.feature, w.touch.normal, w.memory.spring, w.memory.birth_step,
-                                    w.memory.contact_radius, w.rolling, w.touch.distance});
+                                    w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature});
         if (ledger) state.ledger.wall_pairs.push_back(w.last);
       }
     }

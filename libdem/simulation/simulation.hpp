@@ -29,6 +29,7 @@ struct Setup {
   double drag = 0;            // 1/s, viscous drag on velocity and spin per mass and inertia; settles beds
   double watch_force = 20;    // N, grains under a larger compressive force are counted in the windows
   LawChoice law;              // parts of the contact law (libdem/contact/laws.hpp)
+  bool wall_curvature = false;  // the curvature of walls enters the effective radius (on_curved_wall); else they count as flat
   bool keep_ledger = false;   // book where the energy goes (class Ledger); slower. Not with drag
   // A grain whose centre leaves this box is lost and stops the run.
   Vec3 low = Vec3::Constant(-std::numeric_limits<double>::infinity());  // m
@@ -52,6 +53,7 @@ struct State {
     double contact_radius = 0;
     Vec3 rolling = Vec3::Zero();
     double distance = 0;  // m, from the centre to the wall
+    std::array<double, 2> curvature{};  // 1/m, of the wall at the contact
   };
   // Of a run that keeps one; `last_power` empty otherwise.
   struct Ledger {
