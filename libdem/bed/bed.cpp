@@ -26,7 +26,7 @@ constexpr double strongest = 10;
 constexpr double pouring_height = 25;
 // By how much the modulus grows from stage to stage, about.
 constexpr double stiffening = 5;
-constexpr double periods = 2, least_steps = 8000;
+constexpr double periods = 2, least_steps = 4000, calming = 8;
 // Restitution of impacts after pouring: the bed shall come to rest.
 constexpr double inelastic = 0.3;
 constexpr int most_rounds = 20;
@@ -280,9 +280,9 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, c
     for (State::Pair& c : state.pairs) c.spring *= shrink;
     for (State::WallPair& c : state.wall_pairs) c.spring *= shrink;
     const double step = stable_step(harder, g, stiffening * strongest * g.load(), calm_speed);
-    const double shortest = std::max(periods * slowest_period(harder, g), std::min(roll, least_steps * step));
+    const double shortest = std::max(periods * slowest_period(harder, g), least_steps * step);
     state = recipe.run(harder, std::move(state),
-                       {"stiffening to " + pressure(modulus), step, drag, shortest, 3 * shortest, 0.01 * rest});
+                       {"stiffening to " + pressure(modulus), step, std::max(drag, calming / shortest), shortest, 3 * shortest, 0.1 * rest});
   }
 
   // At the true stiffness, adhesion and restitution.
@@ -292,7 +292,7 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, c
   RestProbe probe;
   for (int round = 0; round < most_rounds; ++round) {
     const double length = 4000 * still.step;
-    state = recipe.run(damped, std::move(state), {"resting", still.step, drag, length, length, 0});
+    state = recipe.run(damped, std::move(state), {"resting", still.step, std::max(drag, calming / length), length, length, 0});
     still.drag = 0;
     probe = recipe.probe(still, state);
     if (probe.at_rest()) break;
