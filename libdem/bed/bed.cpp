@@ -24,12 +24,22 @@ constexpr double softness = 2e4;
 constexpr double strongest = 10;
 // Grains are poured from so many diameters above.
 constexpr double pouring_height = 25;
-// By how much the modulus grows from stage to stage, about.
-constexpr double stiffening = 5;
-constexpr double periods = 2, least_steps = 4000, calming = 8;
+// By how much the modulus grows from stage to stage, about, and how many periods of the slowest vibration a stage lasts, and
+// steps: grains of shallow beds too need their time to roll into place.
+constexpr double stiffening = 5, periods = 2, least_steps = 4000;
+// Of the local stable limit of the step. At twice that the forming and breaking of adhesive contacts feeds a bed as much energy
+// as damping takes.
+constexpr double stable_share = 0.2;
+// Takes most of the energy of every vibration in one period.
+constexpr double calming = 0.3;
 // Restitution of impacts after pouring: the bed shall come to rest.
 constexpr double inelastic = 0.3;
+// Rounds of rest and probe, each longer than the one before: most beds need few, a grain that hops on the surface many.
 constexpr int most_rounds = 20;
+constexpr double patience = 1.25;
+
+constexpr double unchanged = std::numeric_limits<double>::infinity();   // Pa
+constexpr double everywhere = std::numeric_limits<double>::infinity();  // m
 
 Setup at_rest(const Setup& run) {
   Setup still = run;
@@ -87,12 +97,23 @@ double slowest_period(const Setup& setup, const Grains& g) {
   return 4 * (g.depth / (2 * g.mean) + 1) * std::sqrt(g.mass(g.mean) / stiffness);
 }
 
+// s, a share of the local stable limit of the step under the contacts as they are: grains that are squeezed under a blade are
+// stiffer than the recipe's bed. Infinity where nothing touches. Forces of `state` are not used.
+double bearable_step(Setup setup, State state) {
+  setup.step = 1e-9;  // is not used: contacts are only looked at
+  setup.local_damping = 0;
+  state.force.clear();
+  state.torque.clear();
+  return stable_share * Simulation(std::move(setup), std::move(state)).stable_step();
+}
+
 struct Stage {
   std::string name;
-  double step, drag;         // s, 1/s
+  double step;               // s, at most; less where grains are squeezed
+  double damping;            // 1, local
   double shortest, longest;  // s; grains that begin to fall look as if they were at rest, so a stage must last a while
   double rest;               // J per grain; the stage ends when the mean kinetic energy stays below
-  double height = std::numeric_limits<double>::infinity();  // m, of the grains that count for that
+  double height = everywhere;  // m, of the grains that count for that
 };
 
 // J, mean kinetic energy of the grains whose centre is not above `height`; 0 where there are none.
@@ -121,15 +142,15 @@ struct Recipe {
 
   // Runs one stage from the given grains and contacts; returns where it ended.
   State run(Setup setup, State state, const Stage& stage) {
-    setup.step = stage.step;
-    setup.drag = stage.drag;
+    setup.local_damping = stage.damping;
     state.step = 0;
     state.force.clear();
     state.torque.clear();
     const std::size_t grains = state.particles.size();
-    Simulation sim(std::move(setup), std::move(state));
-    const std::uint64_t total = std::uint64_t(std::ceil(stage.longest / stage.step));
-    const std::uint64_t least = std::uint64_t(stage.shortest / stage.step);
+    setup.step = std::min(stage.step, bearable_step(setup, state));
+    Simulation sim(setup, std::move(state));
+    const std::uint64_t total = std::uint64_t(std::ceil(stage.longest / setup.step));
+    const std::uint64_t least = std::uint64_t(stage.shortest / setup.step);
     const std::uint64_t block = std::max<std::uint64_t>(total / 200, 50);
     int calm = 0;
     while (sim.step() < total && calm < 3) {
@@ -147,10 +168,16 @@ struct Recipe {
     const std::size_t grains = state.particles.size();
     const std::uint64_t steps = result.state.step;
     grain_steps += double(grains) * double(steps);
-    say({"probing", result.interval, result.interval, grains, result.kinetic_energy / std::max(double(grains), 1.0), steps});
+    say({"probing: " + std::to_string(result.unsupported) + " grains unsupported", result.interval, result.interval, grains,
+         result.kinetic_energy / std::max(double(grains), 1.0), steps});
     return result;
   }
 };
+
+void stop(Particles& p) {
+  for (Vec3& v : p.velocity) v.setZero();
+  for (Vec3& w : p.angular_velocity) w.setZero();
+}
 
 // Removes grains whose centre is above `height`; contacts of the others stay.
 State cut(const State& state, double height) {
@@ -264,38 +291,41 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, c
   state = cut(state, bed.depth);
   if (state.particles.size() == 0) throw CaseError("the bed is empty: no grain lies below its depth");
 
-  // Grains that lose a support roll on to the next one, which takes them some tens of milliseconds. Drag must not hold them
-  // up: it stops what falls at g/drag, far above the speed of rolling over a tenth of a diameter.
-  const double roll = 5 * std::sqrt(d / gravity), drag = 1 / roll;
+  // Grains that lose a support roll on to the next one, which takes them some tens of milliseconds.
+  const double roll = 5 * std::sqrt(d / gravity);
   const double calm_speed = 0.3 * std::sqrt(gravity * d);
   const Setup loose = softened(setup, soft, inelastic);
   const double cutting_step = stable_step(loose, g, strongest * g.load(), calm_speed);
-  state = recipe.run(loose, std::move(state), {"cutting", cutting_step, drag, 0.5 * roll, 10 * roll, 0.1 * rest});
+  state = recipe.run(loose, std::move(state), {"cutting", cutting_step, calming, 0.5 * roll, 10 * roll, 0.1 * rest});
 
+  // The bed swells as it grows stiffer, by its overlaps.
   const int stages = int(std::ceil(std::log(glass.young / soft) / std::log(stiffening)));
+  const double shrink = std::pow(glass.young / soft, -2.0 / 3.0 / stages);  // of overlaps under the same forces
   for (int k = 1; k <= stages; ++k) {
-    const double modulus = k < stages ? soft * std::pow(glass.young / soft, double(k) / stages) : glass.young;
-    const Setup harder = softened(setup, modulus, inelastic);
-    const double shrink = std::pow(glass.young / soft, -2.0 / 3.0 / stages);
+    const double modulus = soft * std::pow(glass.young / soft, double(k) / stages);
+    // Stiffer bodies than the grains get their true modulus in the last stage.
+    const Setup harder = softened(setup, k < stages ? modulus : unchanged, inelastic);
     for (State::Pair& c : state.pairs) c.spring *= shrink;
     for (State::WallPair& c : state.wall_pairs) c.spring *= shrink;
     const double step = stable_step(harder, g, stiffening * strongest * g.load(), calm_speed);
-    const double shortest = std::max(periods * slowest_period(harder, g), least_steps * step);
+    const double length = std::max(periods * slowest_period(harder, g), least_steps * step);
     state = recipe.run(harder, std::move(state),
-                       {"stiffening to " + pressure(modulus), step, std::max(drag, calming / shortest), shortest, 3 * shortest, 0.1 * rest});
+                       {"stiffening to " + pressure(modulus), step, calming, length, 2 * length, rest});
   }
 
   // At the true stiffness, adhesion and restitution.
   Setup still = at_rest(setup);
-  still.step = stable_step(still, g, strongest * g.load(), calm_speed);
-  Setup damped = softened(setup, glass.young, inelastic);
+  const double step = stable_step(still, g, strongest * g.load(), calm_speed);
+  still.step = std::min(step, bearable_step(still, state));
+  const Setup damped = softened(setup, unchanged, inelastic);
   RestProbe probe;
-  for (int round = 0; round < most_rounds; ++round) {
-    const double length = 4000 * still.step;
-    state = recipe.run(damped, std::move(state), {"resting", still.step, std::max(drag, calming / length), length, length, 0});
-    still.drag = 0;
+  double length = std::max(periods * slowest_period(still, g), least_steps * still.step);
+  for (int round = 0; round < most_rounds; ++round, length *= patience) {
+    state = recipe.run(damped, std::move(state), {"resting", step, calming, length, length, 0});
     probe = recipe.probe(still, state);
     if (probe.at_rest()) break;
+    // What rolls need not stop for the next round, but what spins about a single contact never would.
+    stop(state.particles);
   }
   state = probe.state;
   if (!probe.at_rest()) refuse(probe);
@@ -303,8 +333,7 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, c
   SettledBed result;
   result.report = report_on(probe, region, bed);
   result.report.grain_steps = recipe.grain_steps;
-  for (Vec3& v : state.particles.velocity) v.setZero();
-  for (Vec3& w : state.particles.angular_velocity) w.setZero();
+  stop(state.particles);
   for (State::Pair& c : state.pairs) c.birth_step = 0;
   for (State::WallPair& c : state.wall_pairs) c.birth_step = 0;
   state.step = 0;

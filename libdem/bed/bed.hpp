@@ -29,7 +29,7 @@ struct BedReport {
   double largest_overlap = 0;          // 1, over radius
   double top = 0;                      // m, highest grain centre
   // Of the probe that showed the bed at rest.
-  std::size_t unsupported = 0;      // grains; at most one in a thousand, or there would be no bed
+  std::size_t unsupported = 0;      // grains; at most five in a thousand, or there would be no bed
   double probe_interval = 0;        // s
   double largest_displacement = 0;  // m, of any grain over the probe
   double free_fall = 0;             // m, of an unsupported grain over the probe

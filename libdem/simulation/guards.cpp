@@ -109,13 +109,14 @@ void check_motion(const GuardInput& in) {
   }
 }
 
-double stable_step(const GuardInput& in, std::size_t i) {
-  const double largest = Eigen::SelfAdjointEigenSolver<Matrix6>(dynamic_matrix(in, i), Eigen::EigenvaluesOnly).eigenvalues()[5];
-  return largest > 0 ? 2 / std::sqrt(largest) : std::numeric_limits<double>::infinity();
+namespace {
+
+double largest_eigenvalue(const GuardInput& in, std::size_t i) {
+  return Eigen::SelfAdjointEigenSolver<Matrix6>(dynamic_matrix(in, i), Eigen::EigenvaluesOnly).eigenvalues()[5];
 }
 
-void check_stable_step(const GuardInput& in) {
-  // The trace bounds the largest eigenvalue; few grains come near.
+// 1/s^2, [N], traces of the dynamic matrices: upper bounds of their largest eigenvalues.
+std::vector<double> traces(const GuardInput& in) {
   const Particles& p = in.particles;
   const bool friction =
       with_part<TangentialLaws>(in.setup.law.tangential, [](auto part) { return part.has_spring; });
@@ -134,9 +135,30 @@ void check_stable_step(const GuardInput& in) {
   for (const WallCandidate& c : in.walls.candidate)
     for (std::size_t k = 0; k < c.size; ++k)
       if (c.contact[k].acts) add(c.particle, c.constants, c.contact[k].memory.contact_radius);
+  return trace;
+}
+
+double limit_of(double eigenvalue) {
+  return eigenvalue > 0 ? 2 / std::sqrt(eigenvalue) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+double stable_step(const GuardInput& in, std::size_t i) { return limit_of(largest_eigenvalue(in, i)); }
+
+double stable_step(const GuardInput& in) {
+  const std::vector<double> trace = traces(in);
+  double largest = 0;
+  for (std::size_t i = 0; i < trace.size(); ++i)
+    if (trace[i] > largest) largest = std::max(largest, largest_eigenvalue(in, i));
+  return limit_of(largest);
+}
+
+void check_stable_step(const GuardInput& in) {
+  const std::vector<double> trace = traces(in);
   const double dt = in.setup.step;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!(trace[i] * dt * dt > 4)) continue;
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    if (!(trace[i] * dt * dt > 4)) continue;  // few grains come near
     const double limit = stable_step(in, i);
     if (dt > limit)
       throw PhysicsError("the time step of " + number(dt) + " s is above the stable limit of " + number(limit) + " s of " +

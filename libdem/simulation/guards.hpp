@@ -27,8 +27,9 @@ void check_motion(const GuardInput& in);
 // bound of the frequencies of the whole packing, so a step that this refuses is unstable (a step that it allows may still be).
 void check_stable_step(const GuardInput& in);
 
-// s, the limit for grain i; infinity without contacts.
+// s, the limit for grain i, and the smallest of all grains; infinity without contacts.
 double stable_step(const GuardInput& in, std::size_t i);
+double stable_step(const GuardInput& in);
 
 // Names the contact whose overlap has run away.
 [[noreturn]] void stop_for_overlap(const GuardInput& in);

@@ -93,7 +93,10 @@ struct Simulation::Engine {
     const std::size_t n = p.size(), m = setup.materials.size();
     if (!(setup.step > 0)) throw CaseError("the time step is " + number(setup.step) + " s, expected > 0");
     if (const auto why = incompatible(setup.law)) throw CaseError(*why);
-    if (setup.keep_ledger && setup.drag != 0) throw CaseError("an energy ledger knows no drag, got " + number(setup.drag) + " 1/s");
+    if (!(setup.local_damping >= 0 && setup.local_damping < 1))
+      throw CaseError("the local damping is " + number(setup.local_damping) + ", expected 0 <= damping < 1");
+    if (setup.keep_ledger && setup.local_damping != 0)
+      throw CaseError("an energy ledger knows no local damping, got " + number(setup.local_damping));
     if (setup.interactions.size() != m) throw CaseError("expected one row of interactions per material");
     for (const auto& row : setup.interactions)
       if (row.size() != m) throw CaseError("expected one interaction per pair of materials");
@@ -266,7 +269,6 @@ struct Simulation::Engine {
   // Returns the square of the largest movement since the lists were built.
   double sum_and_move(bool move) {
     const std::size_t n = p.size();
-    const double dt = setup.step, keep = 1 - setup.drag * dt;
     double travel2 = 0, largest_compressive = 0;
     std::uint32_t watched = 0;
 #pragma omp parallel for schedule(static) reduction(max : travel2, largest_compressive) reduction(+ : watched) if (n > few_grains)
@@ -303,16 +305,26 @@ struct Simulation::Engine {
       compressive[i] = pressed;
       largest_compressive = std::max(largest_compressive, pressed);
       watched += pressed > setup.watch_force ? 1 : 0;
-      if (move) travel2 = std::max(travel2, kick_and_drift(i, dt, keep));
+      if (move) travel2 = std::max(travel2, kick_and_drift(i));
     }
     window.largest_compressive_force = std::max(window.largest_compressive_force, largest_compressive);
     window.most_watched = std::max(window.most_watched, watched);
     return travel2;
   }
 
-  double kick_and_drift(std::size_t i, double dt, double keep) {
-    p.velocity[i] = keep * p.velocity[i] + (dt / mass[i]) * force[i];
-    p.angular_velocity[i] = keep * p.angular_velocity[i] + (dt / inertia[i]) * torque[i];
+  // The change of a velocity in one step under local damping; the velocity in the middle of the step says which way it goes.
+  Vec3 damped(const Vec3& velocity, const Vec3& change) const {
+    const double speeding_up = change.dot(velocity + 0.5 * change);
+    const double share = speeding_up > 0 ? 1 - setup.local_damping : 1 + setup.local_damping;
+    return share * change;
+  }
+
+  double kick_and_drift(std::size_t i) {
+    const double dt = setup.step;
+    const Vec3 kick = (dt / mass[i]) * force[i], turn = (dt / inertia[i]) * torque[i];
+    const bool plain = setup.local_damping == 0;
+    p.velocity[i] += plain ? kick : damped(p.velocity[i], kick);
+    p.angular_velocity[i] += plain ? turn : damped(p.angular_velocity[i], turn);
     p.position[i] += dt * p.velocity[i];
     return (p.position[i] - listed_position[i]).squaredNorm();
   }
@@ -321,7 +333,7 @@ struct Simulation::Engine {
     double travel2 = 0;
 #pragma omp parallel for schedule(static) reduction(max : travel2) if (p.size() > few_grains)
     for (std::size_t i = 0; i < p.size(); ++i)
-      travel2 = std::max(travel2, kick_and_drift(i, setup.step, 1 - setup.drag * setup.step));
+      travel2 = std::max(travel2, kick_and_drift(i));
     return travel2;
   }
 
@@ -429,6 +441,7 @@ const Setup& Simulation::setup() const { return engine_->setup; }
 const Particles& Simulation::particles() const { return engine_->p; }
 double Simulation::kinetic_energy() const { return engine_->kinetic_energy(); }
 Ledger Simulation::ledger() const { return engine_->ledger(); }
+double Simulation::stable_step() const { return dem::stable_step(engine_->guarded()); }
 
 std::size_t Simulation::contacts() const {
   std::size_t count = 0;

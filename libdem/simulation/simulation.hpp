@@ -26,11 +26,15 @@ struct Setup {
   std::vector<Wall> walls;
   Vec3 gravity{0, 0, -9.81};  // m/s^2
   double step = 0;            // s
-  double drag = 0;            // 1/s, viscous drag on velocity and spin per mass and inertia; settles beds
+  // 1, in [0, 1), Cundall's local damping; settles beds. The sum of forces on a grain is reduced by this share while it speeds
+  // the grain up and enlarged while it slows it down, torques likewise: vibrations of every frequency lose the same share per
+  // period, a falling grain falls with less than gravity, and forces in balance are left alone (Cundall, Proc. Symp. Rock
+  // Mechanics, 1987; here along the force and not axis by axis, so that it does not depend on the axes).
+  double local_damping = 0;
   double watch_force = 20;    // N, grains under a larger compressive force are counted in the windows
   LawChoice law;              // parts of the contact law (libdem/contact/laws.hpp)
   bool wall_curvature = false;  // the curvature of walls enters the effective radius (on_curved_wall); else they count as flat
-  bool keep_ledger = false;   // book where the energy goes (class Ledger); slower. Not with drag
+  bool keep_ledger = false;   // book where the energy goes (class Ledger); slower. Not with local damping
   // A grain whose centre leaves this box is lost and stops the run.
   Vec3 low = Vec3::Constant(-std::numeric_limits<double>::infinity());  // m
   Vec3 high = Vec3::Constant(std::numeric_limits<double>::infinity());  // m
@@ -160,6 +164,9 @@ class Simulation {
   std::size_t contacts() const;  // acting now, walls included
   double kinetic_energy() const;  // J, translation and rotation
   Ledger ledger() const;          // of a run that keeps one; else all zero
+  // s, the smallest local limit of the step, 2/omega of a grain between its contacts as they are now (guards.hpp); infinity
+  // where nothing touches. Costs a pass over the contacts.
+  double stable_step() const;
   State state() const;
   View view() const;
   Window take_window();

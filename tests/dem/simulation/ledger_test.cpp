@@ -214,10 +214,10 @@ TEST(Ledger, IsTheSameForAnyNumberOfThreadsAndAfterARestart) {
   }
 }
 
-TEST(Ledger, IsNotKeptWithDrag) {
+TEST(Ledger, IsNotKeptWithLocalDamping) {
   dem::Setup setup = support::glass_setup();
   setup.keep_ledger = true;
-  setup.drag = 1;
+  setup.local_damping = 0.3;
   EXPECT_THROW(Simulation(setup, {}), CaseError);
 }
 
