@@ -72,7 +72,8 @@ int analyze(const AnalyzeOptions& options) {
   facts.warnings = source.warnings;
   facts.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   write_outputs(options.output, source.info, analysis, source.series, facts);
-  if (!options.quiet) fmt::print("{}results in {}\n", result_text(analysis), options.output);
+  if (!options.quiet) fmt::print("{}{}results in {}\n", result_text(analysis), energy_text(source.info, source.series),
+                                 options.output);
   return 0;
 }
 

@@ -22,6 +22,7 @@
 #include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/results_file.hpp"
+#include "libjam/snapshot/schema.hpp"
 
 namespace jamscope {
 namespace {
@@ -65,6 +66,30 @@ Json run_json(const jam::RunInfo& info, const RunFacts& facts) {
   set_if(analysed, "warnings", facts.warnings, !facts.warnings.empty());
   run["results_by"] = analysed;
   return run;
+}
+
+// J, of all walls that put energy in.
+double work_put_in(const jam::RunInfo& info, const jam::Series& series) {
+  double sum = 0;
+  for (std::size_t w = 0; w < info.walls.size() && w < series.walls.size(); ++w)
+    if (!series.walls[w].work.empty()) sum += std::max(series.walls[w].work.back(), 0.0);
+  return sum;
+}
+
+// The last row of the energy ledger, J.
+Json energy_json(const jam::RunInfo& info, const jam::Series& series) {
+  Json energy, work;
+  for (std::size_t w = 0; w < info.walls.size() && w < series.walls.size(); ++w)
+    if (!series.walls[w].work.empty()) work[info.walls[w].name] = series.walls[w].work.back();
+  energy["time_s"] = series.time.back();
+  energy["work_of_wall"] = work;
+  const std::string folder = "/series/energy/";
+  jam::schema::visit_series(series, [&](const jam::schema::Item& item, const auto& values) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(values)>, std::vector<double>>)
+      if (item.path.starts_with(folder)) energy[std::string(item.path.substr(folder.size()))] = values.back();
+  });
+  energy["residual_over_work_put_in"] = series.energy.residual.back() / work_put_in(info, series);
+  return energy;
 }
 
 const char* word(jam::CompressiveMeasure measure) {
@@ -201,8 +226,22 @@ RunFacts facts_of_this_process(std::vector<std::string> command_line) {
   return facts;
 }
 
-std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const RunFacts& facts) {
-  const Json json{{"run", run_json(info, facts)}, {"analysis", analysis_json(analysis)}};
+std::string energy_text(const jam::RunInfo& info, const jam::Series& series) {
+  if (series.energy.residual.empty()) return "";
+  const jam::Series::Energy& e = series.energy;
+  const double spent = e.normal_damping.back() + e.tangential_damping.back() + e.sliding.back() +
+                       e.rolling_resistance.back() + e.detachment.back();
+  return fmt::format(
+      "energy: {:.4g} J put in by walls, {:.4g} J dissipated (sliding {:.3g} %, normal damping {:.3g} %), {:.2g} J lost by the "
+      "finite step, {:.1g} J unexplained\n",
+      work_put_in(info, series), spent, 100 * e.sliding.back() / spent, 100 * e.normal_damping.back() / spent,
+      e.time_stepping.back(), e.residual.back());
+}
+
+std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
+                         const RunFacts& facts) {
+  Json json{{"run", run_json(info, facts)}, {"analysis", analysis_json(analysis)}};
+  if (!series.energy.residual.empty()) json["energy"] = energy_json(info, series);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -235,7 +274,7 @@ void write_outputs(const std::string& folder, const jam::RunInfo& info, const ja
                    const jam::Series& series, const RunFacts& facts) {
   const auto in_folder = [&](const char* name) { return (fs::path(folder) / name).string(); };
   write_text_file(in_folder("events.csv"), jam::events_csv(analysis));
-  write_text_file(in_folder("summary.json"), summary_json(info, analysis, facts));
+  write_text_file(in_folder("summary.json"), summary_json(info, analysis, series, facts));
   jam::write_results(in_folder("jam.h5"), analysis, info);
   write_text_file(in_folder("report.html"), report_html(info, analysis, series, report_context(info, facts)));
 }

@@ -27,8 +27,12 @@ RunFacts facts_of_this_process(std::vector<std::string> command_line);
 std::string utc_now();  // "2026-11-22T03:08:39Z"
 
 // summary.json. `run` says where the numbers come from; `analysis` depends on the analysis alone, so that equal
-// analyses have equal bytes. Numbers that do not exist (NaN, infinity) are null.
-std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const RunFacts& facts);
+// analyses have equal bytes; `energy`, of runs with a ledger, has its last row. Numbers that do not exist (NaN, infinity) are null.
+std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
+                         const RunFacts& facts);
+
+// One line on where the work of the walls went, of a run that kept an energy ledger; else "".
+std::string energy_text(const jam::RunInfo& info, const jam::Series& series);
 
 // Makes the folder, with its parents. Throws UsageError where it holds something already and `overwrite` is false, or
 // where the path is a file.

@@ -199,6 +199,7 @@ class Run {
   }
 
   double time() const { return simulation_->time(); }
+  std::string energy() const { return energy_text(info_, series_); }
 
  private:
   std::string snapshots() const { return (folder_ / "run.h5").string(); }
@@ -273,7 +274,7 @@ int simulate(const SimulateOptions& options) {
     if (!options.quiet) {
       if (!whole)
         fmt::print("stopped at t = {:.6g} s; the same command with --resume goes on from there\n", run.time());
-      fmt::print("{}results in {}, report in {}\n", result_text(analysis), options.output,
+      fmt::print("{}{}results in {}, report in {}\n", result_text(analysis), run.energy(), options.output,
                  (std::filesystem::path(options.output) / "report.html").string());
     }
     return 0;

@@ -43,6 +43,7 @@ constexpr double everywhere = std::numeric_limits<double>::infinity();  // m
 
 Setup at_rest(const Setup& run) {
   Setup still = run;
+  still.keep_ledger = false;
   for (Wall& w : still.walls) w.motion = resting_at(w.motion, 0);
   return still;
 }

@@ -214,7 +214,7 @@ TEST(Metrics, AreATableOfFrames) {
 }
 
 TEST(Summary, NumbersThatDoNotExistAreNull) {
-  const auto summary = nlohmann::json::parse(summary_json({}, {}, {}));
+  const auto summary = nlohmann::json::parse(summary_json({}, {}, {}, {}));
   EXPECT_TRUE(summary["analysis"]["jams"]["mean_survival_time_s"].is_null());
   EXPECT_EQ(summary["analysis"]["frames"], 0);
   EXPECT_FALSE(summary["run"].contains("case_sha256"));
