@@ -17,8 +17,8 @@ libdem/neighbors    libdem/case libdem/particles libdem/geometry
 libdem/contact      libdem/case libdem/particles libdem/geometry libdem/neighbors
 libdem/simulation   libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact
 libdem/bed          libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation
-libdem/rheometer    libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation libdem/bed
-libdem/.            libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation libdem/bed libdem/rheometer
+libdem/scene    libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation libdem/bed
+libdem/.            libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation libdem/bed libdem/scene
 libjam/snapshot
 libjam/graph        libjam/snapshot
 libjam/metrics      libjam/snapshot libjam/graph

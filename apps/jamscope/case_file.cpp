@@ -6,8 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <tuple>
 
 #include "apps/jamscope/toml_reader.hpp"
+#include "apps/jamscope/wall_tables.hpp"
 #include "libdem/case/check_case.hpp"
 #include "libdem/contact/laws.hpp"
 #include "libdem/errors.hpp"
@@ -145,29 +147,11 @@ void read_blade(Section blade, const std::string& path, Document& document, dem:
   }
   if (kind == "twisted") {
     dem::TwistedBlade t;
-    blade.quantity("diameter", dimension::length, t.diameter);
-    blade.quantity("height", dimension::length, t.height, optional);
-    blade.quantity("thickness", dimension::length, t.thickness, optional);
-    blade.quantity("tip_twist", dimension::angle, t.tip_twist, optional);
-    blade.number("twist_exponent", t.twist_exponent, optional);
-    blade.quantity("shaft_diameter", dimension::length, t.shaft_diameter, optional);
-    blade.quantity("shaft_length", dimension::length, t.shaft_length, optional);
-    using TipCut = dem::TwistedBlade::TipCut;
-    blade.choice("tip_cut", {{"cylindrical", TipCut::cylindrical}, {"flat", TipCut::flat}}, t.tip_cut, optional);
+    read_twisted(blade, t);
     b.shape = t;
   } else {
     dem::MeshFile mesh;
-    std::string file, unit;
-    if (blade.text("file", file))
-      mesh.path = (std::filesystem::path(path).parent_path() / file).lexically_normal().string();
-    if (blade.text("file_unit", unit)) {
-      try {
-        mesh.scale = to_si("1 " + unit, dimension::length);
-      } catch (const UnitError&) {
-        document.problem("blade.file_unit",
-                         fmt::format("'file_unit' wants a unit of length, for example \"mm\"; got '{}'", unit));
-      }
-    }
+    read_mesh_file(blade, path, document, mesh);
     b.shape = mesh;
   }
   blade.finish();
@@ -180,7 +164,7 @@ void read_motion(Section motion, dem::Motion& m) {
   motion.finish();
 }
 
-void read_bed(Section bed, dem::Bed& b) {
+void read_bed(Section bed, Document& document, dem::Bed& b) {
   bed.text("material", b.material);
   bed.quantity("mean_diameter", dimension::length, b.mean_diameter);
   bed.number("size_low", b.size_low);
@@ -189,6 +173,17 @@ void read_bed(Section bed, dem::Bed& b) {
   bed.choice("sizes", {{"number", Sizes::by_number}, {"mass", Sizes::by_mass}}, b.sizes, optional);
   bed.quantity("depth", dimension::length, b.depth);
   bed.whole_number("seed", b.seed, optional);
+  using Sizes = dem::Bed::Sizes;
+  bed.choice("sizes", {{"by_number", Sizes::by_number}, {"by_mass", Sizes::by_mass}}, b.sizes, optional);
+  std::vector<double> x, y;
+  const bool has_x = bed.quantities("x", dimension::length, x, optional);
+  const bool has_y = bed.quantities("y", dimension::length, y, optional);
+  for (const auto& [key, given, values] : {std::tuple{"x", has_x, &x}, std::tuple{"y", has_y, &y}})
+    if (given && values->size() != 2)
+      document.problem(fmt::format("bed.{}", key),
+                       fmt::format("'{}' wants two ends like [\"-5 mm\", \"5 mm\"], got {}", key, values->size()));
+  if (has_x != has_y) document.problem("bed", "a bed between planes wants both 'x' and 'y'");
+  if (x.size() == 2 && y.size() == 2) b.box = dem::BoxRegion{x[0], x[1], y[0], y[1]};
   bed.finish();
 }
 
@@ -237,15 +232,27 @@ void read_analysis(Section analysis, Document& document, jam::Criteria& criteria
   if (criteria.survival_classes.empty()) refuse("survival_classes", "must hold at least one bound, got none");
 }
 
-// Grains touch grains, the vessel and the blade; other pairs never meet.
-void require_pairs(const dem::Case& c, const Given& given, Document& document) {
+// Of a scene without a vessel.
+void read_domain(Section domain, Document& document, dem::Case& c) {
+  if (!domain) return;
+  read_vector(domain, document, "low", dimension::length, c.domain_low);
+  read_vector(domain, document, "high", dimension::length, c.domain_high);
+  domain.finish();
+}
+
+// Grains touch grains and walls; other pairs never meet.
+void require_pairs(const CaseFile& file, const Given& given, Document& document) {
+  const dem::Case& c = file.physics;
   const auto index = [&](const std::string& material, const char* key) {
     return material.empty() ? -1 : find_material(c, material, key, document);
   };
   const int grain = index(c.bed.material, "bed.material");
-  const std::pair<int, const char*> walls[] = {{grain, "grains"},
-                                               {index(c.vessel.material, "vessel.material"), "the vessel"},
-                                               {index(c.blade.material, "blade.material"), "the blade"}};
+  std::vector<std::pair<int, std::string>> walls{{grain, "grains"}};
+  if (c.rheometer) {
+    walls.emplace_back(index(c.vessel.material, "vessel.material"), "the vessel");
+    walls.emplace_back(index(c.blade.material, "blade.material"), "the blade");
+  }
+  for (const dem::SceneWall& w : file.walls) walls.emplace_back(int(w.wall.material), "wall '" + w.wall.name + "'");
   if (document.has_problems()) return;  // a pair may be missing only because its name is misspelt
   std::vector<int> reported;
   for (const auto& [other, what] : walls) {
@@ -288,15 +295,23 @@ CaseFile read_case_text(std::string_view text, const std::string& path, const st
   read_materials(root.section("material"), document, c);
   const Given given = read_interactions(root.section("interaction"), document, c);
   read_contact(root.section("contact", optional), document, c);
-  read_vessel(root.section("vessel"), c.vessel);
-  read_blade(root.section("blade"), path, document, c.blade);
-  read_motion(root.section("motion"), c.motion);
-  read_bed(root.section("bed"), c.bed);
+  // A rheometer as soon as one of its tables is there, or where no walls are given one by one.
+  const toml::table& top = document.table();
+  c.rheometer = top.contains("vessel") || top.contains("blade") || top.contains("motion") || !top.contains("wall");
+  if (c.rheometer) {
+    read_vessel(root.section("vessel"), c.vessel);
+    read_blade(root.section("blade"), path, document, c.blade);
+    read_motion(root.section("motion"), c.motion);
+  } else {
+    read_domain(root.section("domain"), document, c);
+  }
+  file.walls = read_walls(root.section("wall", optional), c, path, document);
+  read_bed(root.section("bed"), document, c.bed);
   read_run(root.section("run"), c);
   read_output(root.section("output"), c.output);
   read_analysis(root.section("analysis", optional), document, file.criteria);
   root.finish();
-  if (!c.materials.empty()) require_pairs(c, given, document);
+  if (!c.materials.empty()) require_pairs(file, given, document);
   document.throw_problems();
 
   for (const dem::CaseProblem& p : dem::case_problems(c)) {

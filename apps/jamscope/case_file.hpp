@@ -14,12 +14,14 @@
 #include <vector>
 
 #include "libdem/case/case.hpp"
+#include "libdem/scene/scene.hpp"
 #include "libjam/jamming/criteria.hpp"
 
 namespace jamscope {
 
 struct CaseFile {
   dem::Case physics;
+  std::vector<dem::SceneWall> walls;  // of the [wall.NAME] tables
   jam::Criteria criteria;
   std::string text;  // the file byte for byte; with overrides, the case after them, written out as TOML again
   std::string path;

@@ -46,14 +46,16 @@ std::vector<DerivedRow> derived_table(const dem::Case& c, const dem::Derived& d)
   };
   const auto percent = [](double share) { return fmt::format("{:.3g} %", 100 * share); };
 
-  add("motion", "axial velocity u", d.axial_velocity, "m/s", d.axial_velocity < 0 ? "downward" : "upward");
-  rows.push_back({"motion", "angular velocity omega", fmt::format("{:.3g}", d.angular_velocity), "rad/s",
-                  c.motion.clockwise ? "clockwise seen from above" : "counter-clockwise seen from above",
-                  d.angular_velocity});
-  add("motion", "travel", d.travel, "m", fmt::format("{:.3g} turns", d.turns));
-  add("motion", "lowest point at the end", d.end_height, "m", "above the floor");
-  add("motion", "gap between tip and vessel", d.gap, "m",
-      fmt::format("{:.2f} of the mean grain, {:.2f} of D90", d.gap_over_mean, d.gap_over_d90));
+  if (c.rheometer) {
+    add("motion", "axial velocity u", d.axial_velocity, "m/s", d.axial_velocity < 0 ? "downward" : "upward");
+    rows.push_back({"motion", "angular velocity omega", fmt::format("{:.3g}", d.angular_velocity), "rad/s",
+                    c.motion.clockwise ? "clockwise seen from above" : "counter-clockwise seen from above",
+                    d.angular_velocity});
+    add("motion", "travel", d.travel, "m", fmt::format("{:.3g} turns", d.turns));
+    add("motion", "lowest point at the end", d.end_height, "m", "above the floor");
+    add("motion", "gap between tip and vessel", d.gap, "m",
+        fmt::format("{:.2f} of the mean grain, {:.2f} of D90", d.gap_over_mean, d.gap_over_d90));
+  }
 
   add_plain(
       "bed", "grains", d.grains, whole(d.grains),
@@ -63,34 +65,36 @@ std::vector<DerivedRow> derived_table(const dem::Case& c, const dem::Derived& d)
   add("bed", "mass of the mean grain", d.mean_mass * 1e3, "g");
   rows.back().si = d.mean_mass;
 
+  const auto modulus = [](double pascal) {
+    const Scaled s = scaled(pascal, "Pa");
+    return s.value + " " + s.unit;
+  };
   add("contact", "effective modulus E*", d.modulus, "Pa",
-      fmt::format("vessel {} {}, blade {} {}", scaled(d.modulus_vessel, "Pa").value,
-                  scaled(d.modulus_vessel, "Pa").unit, scaled(d.modulus_blade, "Pa").value,
-                  scaled(d.modulus_blade, "Pa").unit));
+      c.rheometer ? fmt::format("vessel {}, blade {}", modulus(d.modulus_vessel), modulus(d.modulus_blade)) : "");
   add("contact", "pull-off force", d.pull_off_force, "N", "3/2 pi W R*");
   add_plain("contact", "Bond number", d.bond, fmt::format("{:.3g}", d.bond), "3/2 pi W R / (m g)");
   add_plain("contact", "Cohesion number", d.cohesion, fmt::format("{:.2g}", d.cohesion),
             "(W^5 / (E^2 R^8))^(1/3) / (rho g)");
-  add("contact", "mean grain squeezed in the gap", d.mean_in_gap.force, "N", d.mean_in_gap.force > 0 ? "" : "it fits");
+  if (c.rheometer) add("contact", "mean grain squeezed in the gap", d.mean_in_gap.force, "N", d.mean_in_gap.force > 0 ? "" : "it fits");
 
   add("time", "step", c.step, "s",
       fmt::format("{} of the smallest grain's Rayleigh time, {} of the mean one's",
                   percent(d.step_over_rayleigh_smallest), percent(d.step_over_rayleigh_mean)));
   add("time", "Rayleigh time, smallest grain", d.rayleigh_smallest, "s");
   add("time", "Rayleigh time, mean grain", d.rayleigh_mean, "s");
-  add("time", "critical step in the gap", d.mean_in_gap.critical_step, "s",
+  if (c.rheometer) add("time", "critical step in the gap", d.mean_in_gap.critical_step, "s",
       d.mean_in_gap.force > 0 ? fmt::format("the step is {} of it", percent(c.step / d.mean_in_gap.critical_step))
                               : "nothing is squeezed");
-  add("time", "Hertz contact time at tip speed", d.contact_time, "s",
+  if (c.rheometer) add("time", "Hertz contact time at tip speed", d.contact_time, "s",
       fmt::format("{:.3g} steps", d.contact_time / c.step));
 
   add_plain("cost", "steps", d.steps, whole(d.steps), fmt::format("for {} s", c.duration));
   add_plain("cost", "frames", d.frames, whole(d.frames),
             fmt::format("and {} rows of series, {} checkpoints", whole(d.series_rows), whole(d.checkpoints)));
-  // The rates between which dense JKR runs with history lie on one core of today's machines.
+  // The rates between which dense runs lie on one core of machines with AVX2 or AVX-512.
   add_plain("cost", "grain steps", d.particle_steps, fmt::format("{:.2g}", d.particle_steps),
-            fmt::format("{} to {} on one core at 1 to 4 million a second", duration_text(d.particle_steps / 1e6),
-                        duration_text(d.particle_steps / 4e6)));
+            fmt::format("{} to {} on one core at 5 to 15 million a second", duration_text(d.particle_steps / 5e6),
+                        duration_text(d.particle_steps / 15e6)));
   add("cost", "disk", d.bytes_on_disk, "B", "estimate, compressed");
   return rows;
 }

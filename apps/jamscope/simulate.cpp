@@ -46,11 +46,10 @@ std::string bed_text(const dem::BedReport& r) {
       1e3 * r.probe_interval, r.unsupported, 1e6 * r.largest_displacement, 1e6 * r.free_fall, r.kinetic_energy, r.rest_scale);
 }
 
-dem::SettledBed settled_bed(const CaseFile& file, const dem::Rheometer& rheometer, const std::string& cache,
+dem::SettledBed settled_bed(const CaseFile& file, const dem::Scene& scene, const std::string& cache,
                             Console& console) {
   const dem::Case& c = file.physics;
-  const dem::CylinderRegion vessel{0.5 * c.vessel.diameter};
-  const std::string key = bed_key(rheometer.setup, c.bed, vessel);
+  const std::string key = bed_key(scene.setup, c.bed, scene.region);
   const std::string path = cache.empty() ? "" : (std::filesystem::path(cache) / ("bed-" + key.substr(0, 16) + ".h5")).string();
   if (!path.empty()) {
     try {
@@ -75,7 +74,7 @@ dem::SettledBed settled_bed(const CaseFile& file, const dem::Rheometer& rheomete
   };
   dem::SettledBed bed;
   try {
-    bed = dem::make_bed(rheometer.setup, c.bed, std::uint8_t(dem::material_index(c, c.bed.material)), vessel, report,
+    bed = dem::make_bed(scene.setup, c.bed, std::uint8_t(dem::material_index(c, c.bed.material)), scene.region, report,
                         [] { return stop_requested(); });
   } catch (const dem::BedInterrupted&) {
     throw Interrupted{};
@@ -101,16 +100,16 @@ class Run {
         console_(console),
         folder_(options.output),
         sha_(sha256_hex(file.text)),
-        rheometer_(dem::make_rheometer(file.physics)),
-        info_(run_info(file, rheometer_, options.command_line)),
+        scene_(dem::make_scene(file.physics, file.walls)),
+        info_(run_info(file, scene_, options.command_line)),
         pipeline_(info_, file.criteria) {
-    rheometer_.setup.watch_force = file.criteria.jam_force;
+    scene_.setup.watch_force = file.criteria.jam_force;
   }
 
   void begin() {
-    dem::SettledBed bed = settled_bed(file_, rheometer_, options_.bed_cache, console_);
+    dem::SettledBed bed = settled_bed(file_, scene_, options_.bed_cache, console_);
     writer_.emplace(jam::SnapshotWriter::create(snapshots(), info_));
-    simulation_.emplace(rheometer_.setup, std::move(bed.state));
+    simulation_.emplace(scene_.setup, std::move(bed.state));
     record_frame();
     save();
   }
@@ -127,7 +126,7 @@ class Run {
     series_ = stored.series;
     pending_ = std::move(checkpoint.pending);
     jam::schema::append(series_, pending_);
-    simulation_.emplace(rheometer_.setup, std::move(checkpoint.state));
+    simulation_.emplace(scene_.setup, std::move(checkpoint.state));
     console_.note(fmt::format("resumed at t = {:.6g} s, step {}, with {} frames", simulation_->time(), simulation_->step(), stored.frames));
   }
 
@@ -240,7 +239,7 @@ class Run {
   Console& console_;
   std::filesystem::path folder_;
   std::string sha_;
-  dem::Rheometer rheometer_;
+  dem::Scene scene_;
   jam::RunInfo info_;
   jam::Pipeline pipeline_;
   std::optional<jam::SnapshotWriter> writer_;

@@ -10,8 +10,16 @@
 namespace jamscope {
 namespace {
 
-jam::WallRole role_of(std::size_t wall) {
-  return wall == dem::wall_blade ? jam::WallRole::blade : jam::WallRole::vessel;
+jam::WallRole role_of(dem::WallRole role) {
+  switch (role) {
+    case dem::WallRole::blade:
+      return jam::WallRole::blade;
+    case dem::WallRole::vessel:
+      return jam::WallRole::vessel;
+    case dem::WallRole::other:
+      break;
+  }
+  return jam::WallRole::other;
 }
 
 // The shape as the snapshot file has it.
@@ -103,8 +111,14 @@ void append(jam::Series::Energy& e, const dem::Ledger& l) {
 
 }  // namespace
 
-jam::RunInfo run_info(const CaseFile& file, const dem::Rheometer& rheometer, const std::vector<std::string>& argv) {
-  const dem::Setup& setup = rheometer.setup;
+std::string wall_kind(const dem::WallShape& shape) {
+  jam::Wall info;
+  std::visit([&](const auto& s) { describe(s, info); }, shape);
+  return info.kind;
+}
+
+jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::vector<std::string>& argv) {
+  const dem::Setup& setup = scene.setup;
   jam::RunInfo info;
   info.creator = "jamscope";
   info.creator_version = version;
@@ -123,8 +137,8 @@ jam::RunInfo run_info(const CaseFile& file, const dem::Rheometer& rheometer, con
       info.interactions.back().push_back({i.restitution, i.friction, i.rolling_friction, i.work_of_adhesion});
   }
   for (std::size_t w = 0; w < setup.walls.size(); ++w)
-    info.walls.push_back(wall_info(setup.walls[w], role_of(w), setup.materials[setup.walls[w].material].name));
-  info.gap = {rheometer.tip_radius, 0.5 * file.physics.vessel.diameter, rheometer.blade_low, rheometer.blade_high};
+    info.walls.push_back(wall_info(setup.walls[w], role_of(scene.roles[w]), setup.materials[setup.walls[w].material].name));
+  if (const auto& gap = scene.gap) info.gap = {gap->tip_radius, gap->vessel_radius, gap->blade_low, gap->blade_high};
   return info;
 }
 

@@ -1,14 +1,17 @@
 // The glue between the libraries: what libdem shows of a run, in libjam's terms.
 #pragma once
 #include "apps/jamscope/case_file.hpp"
-#include "libdem/rheometer/rheometer.hpp"
+#include "libdem/scene/scene.hpp"
 #include "libdem/simulation/simulation.hpp"
 #include "libjam/snapshot/snapshot.hpp"
 
 namespace jamscope {
 
+// "plane", "cylinder", "cone", "disc", "spheres" or "mesh", as in a snapshot file.
+std::string wall_kind(const dem::WallShape& shape);
+
 // Everything a snapshot file says once about its run.
-jam::RunInfo run_info(const CaseFile& file, const dem::Rheometer& rheometer, const std::vector<std::string>& argv);
+jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::vector<std::string>& argv);
 
 // One frame, rounded to the file's precision.
 jam::Snapshot snapshot(const dem::View& view);

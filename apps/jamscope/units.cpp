@@ -18,6 +18,7 @@ constexpr Dimension named[] = {
     dimension::time,
     dimension::angle,
     dimension::speed,
+    dimension::angular_velocity,
     dimension::acceleration,
     dimension::pressure,
     dimension::density,

@@ -21,6 +21,7 @@ inline constexpr Dimension length{"a length", "m", "0.925 mm", {1, 0, 0, 0}};
 inline constexpr Dimension time{"a time", "s", "2 ms", {0, 0, 1, 0}};
 inline constexpr Dimension angle{"an angle", "rad", "-5 deg", {0, 0, 0, 1}};
 inline constexpr Dimension speed{"a speed", "m/s", "250 mm/s", {1, 0, -1, 0}};
+inline constexpr Dimension angular_velocity{"an angular velocity", "rad/s", "20 rad/s", {0, 0, -1, 1}};
 inline constexpr Dimension acceleration{"an acceleration", "m/s2", "9.81 m/s2", {1, 0, -2, 0}};
 inline constexpr Dimension pressure{"a pressure", "Pa", "63 GPa", {-1, 1, -2, 0}};
 inline constexpr Dimension density{"a density", "kg/m3", "2500 kg/m3", {-3, 1, 0, 0}};

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "libdem/bed/region.hpp"
+#include "libdem/case/bed_region.hpp"
 #include "libdem/simulation/simulation.hpp"
 
 namespace dem {

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "libdem/bed/region.hpp"
+#include "libdem/case/bed_region.hpp"
 #include "libdem/simulation/simulation.hpp"
 
 namespace dem {

@@ -8,7 +8,7 @@
 #pragma once
 #include <functional>
 
-#include "libdem/bed/region.hpp"
+#include "libdem/case/bed_region.hpp"
 #include "libdem/simulation/simulation.hpp"
 
 namespace dem {

@@ -1,8 +1,9 @@
-// Everything a rheometer run needs, as plain data in SI units. Read from TOML by apps/jamscope/case_file; checked by
+// Everything a run needs but its additional walls, as plain data in SI units. Read from TOML by apps/jamscope/case_file; checked by
 // check_case (libdem/case/check_case.hpp).
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -38,6 +39,18 @@ struct ContactModel {
   bool wall_curvature = false;
 };
 
+// A circle about the z axis.
+struct CylinderRegion {
+  double radius = 0;  // m
+};
+
+// A rectangle.
+struct BoxRegion {
+  double x_low = 0, x_high = 0, y_low = 0, y_high = 0;  // m
+};
+
+using BedRegion = std::variant<CylinderRegion, BoxRegion>;
+
 // A bed of spheres, diameters uniform by number or by mass in [size_low, size_high] * mean_diameter
 // (libdem/case/size_distribution.hpp), poured, settled, relaxed at the true stiffness and cut at `depth`.
 struct Bed {
@@ -50,6 +63,7 @@ struct Bed {
   double depth = 0;  // m, height of the cut above the vessel floor
   std::uint64_t seed = 1;
   Sizes sizes = Sizes::by_number;
+  std::optional<BoxRegion> box = std::nullopt;  // where grains are placed; without it in the vessel
 };
 
 struct Vessel {
@@ -103,9 +117,14 @@ struct Case {
   std::vector<std::vector<Interaction>> interactions;  // [M][M], symmetric, order of `materials`
   ContactModel contact;
   Bed bed;
+  // A rheometer has a vessel, a blade and the blade's motion; of other scenes, whose walls are all given one by one
+  // (libdem/scene), these three mean nothing.
+  bool rheometer = true;
   Vessel vessel;
   Blade blade;
   Motion motion;
+  // m, grains outside of it are lost; not used for a rheometer, whose vessel says.
+  Vec3 domain_low = Vec3::Zero(), domain_high = Vec3::Zero();
   double duration = 0;        // s
   double step = 0;            // s
   Vec3 gravity{0, 0, -9.81};  // m/s^2

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <tuple>
 
+#include "libdem/case/bed_region.hpp"
 #include "libdem/errors.hpp"
 
 namespace dem {
@@ -50,6 +52,11 @@ struct Checker {
 };
 
 void check_materials(const Case& c, Checker& check) {
+  const auto sticks = [](const Interaction& i) { return i.work_of_adhesion > 0; };
+  if (c.contact.normal == "hertz" && std::any_of(c.interactions.begin(), c.interactions.end(), [&](const auto& row) {
+        return std::any_of(row.begin(), row.end(), sticks);
+      }))
+    check.warn("contact.normal", "= hertz knows no adhesion: the work_of_adhesion of the interactions has no effect");
   for (const Material& m : c.materials) {
     const std::string key = "material." + m.name;
     check.positive(key + ".density", m.density, " kg/m3");
@@ -80,7 +87,17 @@ bool check_bed(const Case& c, Checker& check) {
     good = false;
   }
   good &= check.positive("bed.depth", c.bed.depth, " m");
-  good &= check.positive("vessel.diameter", c.vessel.diameter, " m");
+  if (c.rheometer) good &= check.positive("vessel.diameter", c.vessel.diameter, " m");
+  if (const auto& box = c.bed.box) {
+    if (!(box->x_high > box->x_low))
+      check.refuse("bed.x", "must rise, got " + text(box->x_low) + " m to " + text(box->x_high) + " m");
+    if (!(box->y_high > box->y_low))
+      check.refuse("bed.y", "must rise, got " + text(box->y_low) + " m to " + text(box->y_high) + " m");
+    good &= box->x_high > box->x_low && box->y_high > box->y_low;
+  } else if (!c.rheometer) {
+    check.refuse("bed.x", "and y must say where the bed is, as there is no vessel");
+    good = false;
+  }
   if (!good) return false;
 
   const double largest = c.bed.size_high * c.bed.mean_diameter;
@@ -93,7 +110,11 @@ bool check_bed(const Case& c, Checker& check) {
                  "leaves no bed: " + text(c.bed.depth) + " m is less than one grain of " + text(largest) + " m");
     good = false;
   }
-  if (c.vessel.diameter < 2 * largest) {
+  if (c.bed.box && clear_radius(*c.bed.box) < 0.5 * largest) {
+    check.refuse("bed.x", "and y leave no room for one of the largest grains (" + text(largest) + " m)");
+    good = false;
+  }
+  if (c.rheometer && c.vessel.diameter < 2 * largest) {
     check.refuse("vessel.diameter", "must be at least two of the largest grains (" + text(largest) + " m), got " +
                                         text(c.vessel.diameter) + " m");
     good = false;
@@ -129,6 +150,21 @@ bool check_twisted_blade(const Case& c, const TwistedBlade& blade, Checker& chec
     good = false;
   }
   return good;
+}
+
+bool check_blade_and_motion(const Case& c, Checker& check) {
+  bool blade = true;
+  if (const auto* twisted = std::get_if<TwistedBlade>(&c.blade.shape))
+    blade = check_twisted_blade(c, *twisted, check);
+  else
+    blade = check.positive("blade.scale", std::get<MeshFile>(c.blade.shape).scale, "");
+  bool motion = check.positive("motion.tip_speed", c.motion.tip_speed, " m/s");
+  if (!(std::abs(c.motion.helix_angle) < std::numbers::pi / 2)) {
+    check.refuse("motion.helix_angle",
+                 "must lie in (-90, 90) deg, got " + text(c.motion.helix_angle * 180 / std::numbers::pi) + " deg");
+    motion = false;
+  }
+  return blade && motion;
 }
 
 void check_fit(const Case& c, double tip, Checker& check) {
@@ -193,10 +229,11 @@ bool known_materials(const Case& c, Checker& check) {
   const auto known = [&](const std::string& name) {
     return std::any_of(c.materials.begin(), c.materials.end(), [&](const Material& m) { return m.name == name; });
   };
-  for (const auto& [key, name] : {std::pair<const char*, const std::string&>{"bed.material", c.bed.material},
-                                  {"vessel.material", c.vessel.material},
-                                  {"blade.material", c.blade.material}})
-    if (!known(name)) {
+  for (const auto& [key, name, used] :
+       {std::tuple<const char*, const std::string&, bool>{"bed.material", c.bed.material, true},
+        {"vessel.material", c.vessel.material, c.rheometer},
+        {"blade.material", c.blade.material, c.rheometer}})
+    if (used && !known(name)) {
       check.refuse(key, "is not among the materials: '" + name + "'");
       good = false;
     }
@@ -216,17 +253,9 @@ std::vector<CaseProblem> case_problems(const Case& c, double tip) {
   if (!known_materials(c, check)) return check.problems;  // nothing else can be worked out
   check_materials(c, check);
   const bool bed = check_bed(c, check);
-  bool blade = true;
-  if (const auto* twisted = std::get_if<TwistedBlade>(&c.blade.shape))
-    blade = check_twisted_blade(c, *twisted, check);
-  else
-    blade = check.positive("blade.scale", std::get<MeshFile>(c.blade.shape).scale, "");
-  bool motion = check.positive("motion.tip_speed", c.motion.tip_speed, " m/s");
-  if (!(std::abs(c.motion.helix_angle) < std::numbers::pi / 2)) {
-    check.refuse("motion.helix_angle",
-                 "must lie in (-90, 90) deg, got " + text(c.motion.helix_angle * 180 / std::numbers::pi) + " deg");
-    motion = false;
-  }
+  const bool rheometer = c.rheometer && check_blade_and_motion(c, check);
+  if (!c.rheometer && !(c.domain_low.array() < c.domain_high.array()).all())
+    check.refuse("domain.high", "must lie above domain.low in every direction");
   const bool duration = check.positive("run.duration", c.duration, " s");
   const bool step = check.positive("run.step", c.step, " s");
   const double gravity = c.gravity.norm();
@@ -236,7 +265,7 @@ std::vector<CaseProblem> case_problems(const Case& c, double tip) {
   const bool grains = bed && std::none_of(check.problems.begin(), check.problems.end(), [](const CaseProblem& p) {
                         return p.fatal && p.key.starts_with("material.");
                       });
-  if (grains && blade && motion && duration && tip > 0) check_fit(c, tip, check);
+  if (grains && rheometer && duration && tip > 0) check_fit(c, tip, check);
   if (grains && step) check_step(c, check);
   if (duration && step) {
     check_interval("run.duration", c.duration, c, check);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "libdem/case/bed_region.hpp"
 #include "libdem/case/size_distribution.hpp"
 
 namespace dem {
@@ -56,37 +57,47 @@ double tip_radius(const Case& c) {
   return blade ? blade->diameter / 2 : 0;
 }
 
-Derived derive(const Case& c, double tip) {
-  Derived d;
+namespace {
+
+// What there is of a rheometer only; needs the sizes of the grains.
+void derive_rheometer(const Case& c, double tip, Derived& d) {
   const Material& grain = c.materials[material_index(c, c.bed.material)];
   const Material& vessel = c.materials[material_index(c, c.vessel.material)];
   const Material& blade = c.materials[material_index(c, c.blade.material)];
-  const std::size_t g = material_index(c, c.bed.material);
-  const double adhesion = c.interactions[g][g].work_of_adhesion, gravity = c.gravity.norm();
-
   d.axial_velocity = c.motion.tip_speed * std::sin(c.motion.helix_angle);
   d.angular_velocity = c.motion.tip_speed * std::cos(c.motion.helix_angle) / tip;
   d.travel = std::abs(d.axial_velocity) * c.duration;
   d.turns = d.angular_velocity * c.duration / (2 * pi);
   d.end_height = c.blade.start_height + d.axial_velocity * c.duration;
   d.gap = c.vessel.diameter / 2 - tip;
+  d.gap_over_mean = d.gap / c.bed.mean_diameter;
+  d.gap_over_d90 = d.gap / d.d90;
+  d.modulus_vessel = effective_modulus(grain, vessel);
+  d.modulus_blade = effective_modulus(grain, blade);
+  d.contact_time = hertz_contact_time(d.mean_mass / 2, d.reduced_radius, d.modulus, c.motion.tip_speed);
+  d.mean_in_gap = squeeze(grain, blade, vessel, c.bed.mean_diameter, d.gap);
+}
+
+}  // namespace
+
+Derived derive(const Case& c, double tip) {
+  Derived d;
+  const Material& grain = c.materials[material_index(c, c.bed.material)];
+  const std::size_t g = material_index(c, c.bed.material);
+  const double adhesion = c.interactions[g][g].work_of_adhesion, gravity = c.gravity.norm();
 
   const double mean = c.bed.mean_diameter, a = c.bed.size_low, b = c.bed.size_high, radius = mean / 2;
   d.smallest_diameter = a * mean;
   d.largest_diameter = b * mean;
   d.d90 = size_quantile(c.bed, 0.9) * mean;
-  d.gap_over_mean = d.gap / mean;
-  d.gap_over_d90 = d.gap / d.d90;
   d.mean_mass = grain.density * pi / 6 * mean * mean * mean;
-  const double bed_volume = pi / 4 * c.vessel.diameter * c.vessel.diameter * c.bed.depth;
+  const double bed_volume = cross_section(bed_region(c)) * c.bed.depth;
   const double grains_if_solid = bed_volume / (mean_cubed_size(c.bed) * pi / 6 * mean * mean * mean);
   d.grains_loose = 0.56 * grains_if_solid;
   d.grains = 0.60 * grains_if_solid;
   d.grains_dense = 0.64 * grains_if_solid;
 
   d.modulus = effective_modulus(grain, grain);
-  d.modulus_vessel = effective_modulus(grain, vessel);
-  d.modulus_blade = effective_modulus(grain, blade);
   d.reduced_radius = radius / 2;
   d.pull_off_force = 1.5 * pi * adhesion * d.reduced_radius;
   d.bond = 1.5 * pi * adhesion * radius / (d.mean_mass * gravity);
@@ -97,8 +108,7 @@ Derived derive(const Case& c, double tip) {
   d.rayleigh_smallest = rayleigh_time(grain, a * radius);
   d.step_over_rayleigh_mean = c.step / d.rayleigh_mean;
   d.step_over_rayleigh_smallest = c.step / d.rayleigh_smallest;
-  d.contact_time = hertz_contact_time(d.mean_mass / 2, d.reduced_radius, d.modulus, c.motion.tip_speed);
-  d.mean_in_gap = squeeze(grain, blade, vessel, mean, d.gap);
+  if (c.rheometer) derive_rheometer(c, tip, d);
 
   // The frame at t = 0 counts too.
   d.steps = std::round(c.duration / c.step);
@@ -108,8 +118,9 @@ Derived derive(const Case& c, double tip) {
   d.particle_steps = d.grains * d.steps;
   // Bytes of one row of each table of the snapshot schema. Wall contacts: one grain in 1.3 diameters squared of wall.
   constexpr double particle_row = 49, particle_contact_row = 41, wall_contact_row = 67, series_row = 700;
-  const double wall_area = pi * c.vessel.diameter * (c.bed.depth + c.vessel.diameter / 4);
-  const double wall_contacts = wall_area / (1.3 * mean * mean);
+  // Of a round bed of that cross-section.
+  const double diameter = std::sqrt(4 / pi * cross_section(bed_region(c)));
+  const double wall_contacts = pi * diameter * (c.bed.depth + diameter / 4) / (1.3 * mean * mean);
   d.bytes_per_frame = d.grains * (particle_row + 2.6 * particle_contact_row) + wall_contacts * wall_contact_row;
   d.bytes_on_disk = 0.66 * d.frames * d.bytes_per_frame + d.series_rows * series_row;
   return d;

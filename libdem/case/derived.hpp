@@ -37,7 +37,7 @@ Squeeze squeeze(const Material& grain, const Material& wall_a, const Material& w
 double tip_radius(const Case& c);
 
 struct Derived {
-  // Motion [X, section 2].
+  // Motion [X, section 2]; this, the moduli with vessel and blade, contact_time and mean_in_gap of a rheometer only.
   double axial_velocity = 0;    // m/s, u = v sin(alpha); negative: downward
   double angular_velocity = 0;  // rad/s, omega = v cos(alpha) / R_tip, positive whatever the sense
   double travel = 0;            // m, |u| duration

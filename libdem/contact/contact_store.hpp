@@ -41,8 +41,9 @@ struct PairContacts {
   std::vector<Bodies> bodies;               // [P]
   std::vector<std::uint32_t> material_pair;  // [P] index into MaterialTable::pair
   double reach_beyond_touch = 0;             // m, gap across which contacts of the law may form
-  // Pairs are handled in fixed chunks, whose sums are added in order: they do not depend on the number of threads.
-  static constexpr std::size_t chunk_size = 1024;
+  // Pairs are handled in chunks of the first grains' rows, whose sums are added in order: they depend neither on the number of
+  // threads nor on which pairs that do not touch are in the list.
+  static constexpr std::size_t chunk_rows = 128;
   struct Chunk {
     double largest_overlap = 0;  // over the smaller radius
     LedgerSums ledger;
@@ -76,8 +77,8 @@ struct WallContacts {
   std::vector<std::uint8_t> acts;        // per candidate: number of formed contacts
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> of_particle_begin, of_particle;  // compressed rows: candidates of each particle, ascending
-  // Candidates are handled in fixed chunks of one wall each, whose loads are added in order: the sum does not depend on the
-  // number of threads.
+  // Candidates are handled in chunks of one wall and so many rows of grains each, whose loads are added in order, likewise.
+  static constexpr std::uint32_t chunk_rows = 256;
   struct Chunk {
     std::uint32_t wall, begin, end;
     WallLoad load;

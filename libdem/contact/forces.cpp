@@ -47,25 +47,12 @@ PairConstants<Pack> gather_materials(bool one_pair, Get get) {
   return c;
 }
 
-// Sums of LedgerSums, lane by lane.
-struct PackedSums {
-  Pack normal_damping = 0.0, tangential_damping = 0.0, sliding = 0.0, rolling = 0.0, detachment = 0.0, stiffness_change = 0.0,
-       time_stepping = 0.0;
-  // Packs of lanes that hold nothing add nothing.
-  LedgerSums sum() const {
-    using std::experimental::reduce;
-    return {reduce(normal_damping),   reduce(tangential_damping), reduce(sliding),      reduce(rolling), reduce(detachment),
-            reduce(stiffness_change), reduce(time_stepping)};
-  }
-};
-
-// One block's parts of (1) in ledger.hpp. `get(k)` gives lane k's LastForces; lanes that are not `used` book nothing and keep
-// theirs. `v` are the velocities of i less those of j at the centres (of a wall: zero, its contact point's comes on top),
+// One block's parts of (1) in ledger.hpp. `get(k)` gives lane k's LastForces; lanes from `count` on book nothing. `v` are the velocities of i less those of j at the centres (of a wall: zero, its contact point's comes on top),
 // `point_velocity` and `spin_j` those of a wall now.
 template <class Law, class Get>
 void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c, const ContactForce<Pack>& f,
-          const Mask<Pack>& holds, const Mask<Pack>& touched, const Mask<Pack>& used, const Triple<Pack>& v, bool wall,
-          const Triple<Pack>& wall_velocity, double dt, std::size_t count, Get get, PackedSums& sums) {
+          const Mask<Pack>& holds, const Mask<Pack>& touched, const Triple<Pack>& v, bool wall,
+          const Triple<Pack>& wall_velocity, double dt, std::size_t count, Get get, LedgerSums& sums) {
   // The step before, with the velocities of now.
   const Triple<Pack> normal = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).normal; });
   const Pack arm_i = gather([&](std::size_t k) { return get(k).arm_i; });
@@ -111,13 +98,10 @@ void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c
   const Pack stored = normal_now - normal_energy + tangential_now - tangential_energy + rolling_now - rolling_energy;
   const Pack time_stepping = taken_normal + taken_damping + taken_spring + taken_viscous + taken_rolling -
                              (stored + taken_damping + taken_viscous + slip + rolled + detachment - stiffness);
-  sums.normal_damping += only(used, taken_damping);
-  sums.tangential_damping += only(used, taken_viscous);
-  sums.sliding += only(used, slip);
-  sums.rolling += only(used, rolled);
-  sums.detachment += only(used, detachment);
-  sums.stiffness_change += only(used, stiffness);
-  sums.time_stepping += only(used, time_stepping);
+  // One contact after the other: how contacts fall into blocks depends on the list, their order does not.
+  for (std::size_t k = 0; k < count; ++k)
+    sums += {taken_damping[k], taken_viscous[k], slip[k],           rolled[k],
+             detachment[k],    stiffness[k],     time_stepping[k]};
 
   const Pack surface_now = f.normal.surface_energy;
   for (std::size_t k = 0; k < count; ++k) {
@@ -146,14 +130,10 @@ void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c
   }
 }
 
-inline Mask<Pack> first_lanes(std::size_t count) {
-  return Pack([](auto lane) { return double(lane); }) < Pack(double(count));
-}
-
 // One block of pairs: gather, law, scatter. Lanes from `count` on repeat lane 0 and are not written back.
 template <class Law, bool Keep>
 void evaluate_pair_block(const Law& law, const ForceInput& in, PairContacts& pairs, const Lanes& slot, std::size_t count,
-                         double& largest_overlap, PackedSums& sums) {
+                         double& largest_overlap, LedgerSums& sums) {
   const Particles& p = in.particles;
   const auto i = [&](std::size_t k) { return pairs.list.first[slot[k]]; };
   const auto j = [&](std::size_t k) { return pairs.list.second[slot[k]]; };
@@ -203,7 +183,7 @@ void evaluate_pair_block(const Law& law, const ForceInput& in, PairContacts& pai
   const Triple<Pack> torque_j = twist * touch.arm_j + f.rolling.on_j;
   const Pack relative_overlap = touch.overlap / smaller(radius_i, radius_j);
   if constexpr (Keep)
-    book(law, touch, c, f, hold, touched, first_lanes(count), centres, false, nothing(), in.dt, count,
+    book(law, touch, c, f, hold, touched, centres, false, nothing(), in.dt, count,
          [&](std::size_t k) -> LastForces& { return pairs.last[slot[k]]; }, sums);
   for (std::size_t k = 0; k < count; ++k) {
     ContactMemory& memory = pairs.memory[slot[k]];
@@ -232,11 +212,12 @@ void evaluate_pair_block(const Law& law, const ForceInput& in, PairContacts& pai
 template <class Law, bool Keep>
 void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number) {
   const Particles& p = in.particles;
-  const std::size_t begin = number * PairContacts::chunk_size, end = std::min(begin + PairContacts::chunk_size, pairs.list.size());
+  const std::size_t row = number * PairContacts::chunk_rows, last_row = std::min(row + PairContacts::chunk_rows, p.size());
+  const std::size_t begin = pairs.list.begin[row], end = pairs.list.begin[last_row];
   Lanes slot{};
   std::size_t count = 0;
   double largest_overlap = 0;
-  PackedSums sums;
+  LedgerSums sums;
   const auto block = [&] { evaluate_pair_block<Law, Keep>(law, in, pairs, slot, count, largest_overlap, sums); };
   for (std::size_t s = begin; s < end; ++s) {
     const std::uint32_t i = pairs.list.first[s], j = pairs.list.second[s];
@@ -258,7 +239,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
     block();
   }
   pairs.chunk[number].largest_overlap = largest_overlap;
-  if constexpr (Keep) pairs.chunk[number].ledger = sums.sum();
+  if constexpr (Keep) pairs.chunk[number].ledger = sums;
 }
 
 // A contact that its wall no longer has: it broke, or its feature gave way to another while it was loaded and what it stored
@@ -353,7 +334,7 @@ struct WallSlot {
 template <class Law, bool Keep>
 void evaluate_wall_block(const Law& law, const ForceInput& in, WallContacts& walls,
                          const std::array<WallSlot, pack_width>& slot, std::size_t count, WallContacts::Chunk& chunk,
-                         PackedSums& sums) {
+                         LedgerSums& sums) {
   const Particles& p = in.particles;
   const WallPose& pose = in.poses[chunk.wall];
   const auto i = [&](std::size_t k) { return slot[k].candidate->particle; };
@@ -396,7 +377,7 @@ void evaluate_wall_block(const Law& law, const ForceInput& in, WallContacts& wal
   const Triple<Pack> force = tangential - touch.normal * (f.normal.elastic + f.damping);
   const Triple<Pack> torque = cross(arm, tangential) + f.rolling.on_i;
   if constexpr (Keep)
-    book(law, touch, c, f, hold, touched, first_lanes(count), velocity, true, wall_velocity, in.dt, count,
+    book(law, touch, c, f, hold, touched, velocity, true, wall_velocity, in.dt, count,
          [&](std::size_t k) -> LastForces& { return slot[k].contact->last; }, sums);
 
   for (std::size_t k = 0; k < count; ++k) {
@@ -436,7 +417,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
   const WallPose& pose = in.poses[chunk.wall];
   std::array<WallSlot, pack_width> slot{};
   std::size_t count = 0;
-  PackedSums sums;
+  LedgerSums sums;
   chunk.load = WallLoad{};
   chunk.load_of_label.fill(WallLoad{});
   chunk.largest_overlap = 0;
@@ -471,7 +452,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
     for (std::size_t k = count; k < pack_width; ++k) slot[k] = slot[0];
     block();
   }
-  if constexpr (Keep) chunk.ledger += sums.sum();
+  if constexpr (Keep) chunk.ledger += sums;
 }
 
 template <class Law, bool Keep>

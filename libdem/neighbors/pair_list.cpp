@@ -4,9 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace dem {
 namespace {
+
+// Cells hold grains of up to so many mean radii; larger ones look further than the next cell.
+constexpr double many_sizes = 2;
 
 using Cell = std::array<std::int64_t, 3>;
 
@@ -66,38 +70,49 @@ PairList build_pair_list(const std::vector<Vec3>& position, const std::vector<do
   list.incoming_begin.assign(n + 1, 0);
   if (n == 0) return list;
   const double largest = *std::max_element(radius.begin(), radius.end());
-  const Grid grid = make_grid(position, 2 * largest + skin);
+  const double mean = std::accumulate(radius.begin(), radius.end(), 0.0) / double(n);
+  const Grid grid = make_grid(position, 2 * std::min(largest, many_sizes * mean) + skin);
 
-  std::vector<std::vector<std::uint32_t>> partners(n);
+  // The larger grain of a pair looks for the smaller one, as far as its own size needs: a few large grains among small ones cost
+  // no more than the small ones that they touch.
+  std::vector<std::vector<std::uint32_t>> found(n);
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < n; ++i) {
     const Cell c = grid.cell_of(position[i]);
-    auto& mine = partners[i];
-    const auto low = [&](std::size_t k) { return std::max<std::int64_t>(c[k] - 1, 0); };
-    const auto high = [&](std::size_t k) { return std::min(c[k] + 1, grid.cells[k] - 1); };
+    const std::int64_t reach = std::max<std::int64_t>(1, std::int64_t(std::ceil((2 * radius[i] + skin) / grid.edge)));
+    const auto low = [&](std::size_t k) { return std::max<std::int64_t>(c[k] - reach, 0); };
+    const auto high = [&](std::size_t k) { return std::min(c[k] + reach, grid.cells[k] - 1); };
     for (std::int64_t z = low(2); z <= high(2); ++z)
       for (std::int64_t y = low(1); y <= high(1); ++y)
         for (std::int64_t x = low(0); x <= high(0); ++x) {
           const std::size_t k = grid.index({x, y, z});
           for (std::uint32_t m = grid.begin[k]; m < grid.begin[k + 1]; ++m) {
             const std::uint32_t j = grid.member[m];
-            if (j <= i) continue;
-            const double reach = radius[i] + radius[j] + skin;
-            if ((position[i] - position[j]).squaredNorm() < reach * reach) mine.push_back(j);
+            if (radius[j] > radius[i] || (radius[j] == radius[i] && j <= i)) continue;
+            const double near = radius[i] + radius[j] + skin;
+            if ((position[i] - position[j]).squaredNorm() < near * near) found[i].push_back(j);
           }
         }
-    std::sort(mine.begin(), mine.end());
   }
 
-  for (std::size_t i = 0; i < n; ++i) list.begin[i + 1] = list.begin[i] + std::uint32_t(partners[i].size());
+  const auto for_each_found = [&](auto f) {
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (const std::uint32_t j : found[i]) f(std::min(i, j), std::max(i, j));
+  };
+  for_each_found([&](std::uint32_t i, std::uint32_t j) {
+    ++list.begin[i + 1];
+    ++list.incoming_begin[j + 1];
+  });
+  for (std::size_t i = 0; i < n; ++i) list.begin[i + 1] += list.begin[i];
   list.first.resize(list.begin[n]);
   list.second.resize(list.begin[n]);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < partners[i].size(); ++k) {
-      list.first[list.begin[i] + k] = std::uint32_t(i);
-      list.second[list.begin[i] + k] = partners[i][k];
-      ++list.incoming_begin[partners[i][k] + 1];
-    }
+  std::vector<std::uint32_t> at(list.begin.begin(), list.begin.end() - 1);
+  for_each_found([&](std::uint32_t i, std::uint32_t j) { list.second[at[i]++] = j; });
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < n; ++i) {
+    std::sort(list.second.begin() + list.begin[i], list.second.begin() + list.begin[i + 1]);
+    std::fill(list.first.begin() + list.begin[i], list.first.begin() + list.begin[i + 1], std::uint32_t(i));
+  }
   for (std::size_t j = 0; j < n; ++j) list.incoming_begin[j + 1] += list.incoming_begin[j];
   list.incoming.resize(list.size());
   std::vector<std::uint32_t> next(list.incoming_begin.begin(), list.incoming_begin.end() - 1);

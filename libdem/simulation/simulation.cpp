@@ -13,8 +13,6 @@
 namespace dem {
 namespace {
 
-// Grains of one wall that are handled as one piece of work and summed in order.
-constexpr std::uint32_t chunk_size = 32;
 // Below this many grains waking other threads costs more than they save.
 constexpr std::size_t few_grains = 500;
 
@@ -106,8 +104,10 @@ struct Simulation::Engine {
     for (std::size_t i = 0; i < n; ++i)
       if (p.material[i] >= m || !(p.radius[i] > 0) || !p.position[i].allFinite())
         throw CaseError("grain " + std::to_string(p.id[i]) + " has no material, radius or position");
-    for (const Wall& w : setup.walls)
+    for (const Wall& w : setup.walls) {
       if (w.material >= m) throw CaseError("wall '" + w.name + "' has no material");
+      validate_wall(w);
+    }
   }
 
   double time() const { return double(step) * setup.step; }
@@ -140,7 +140,7 @@ struct Simulation::Engine {
     fresh.material_pair.resize(count);
     if (rolling_spring) fresh.rolling.assign(count, Vec3::Zero());
     if (setup.keep_ledger) fresh.last.resize(count);
-    fresh.chunk.resize((count + PairContacts::chunk_size - 1) / PairContacts::chunk_size);
+    fresh.chunk.resize((n + PairContacts::chunk_rows - 1) / PairContacts::chunk_rows);
     double reach = 0;
 #pragma omp parallel for schedule(static) reduction(max : reach)
     for (std::size_t i = 0; i < n; ++i) {
@@ -205,12 +205,14 @@ struct Simulation::Engine {
         fresh.candidate.push_back(c);
       }
       const std::uint32_t last = std::uint32_t(fresh.candidate.size());
-      for (std::uint32_t b = first; b < last; b += chunk_size) {
-        WallContacts::Chunk chunk{};
-        chunk.wall = w;
-        chunk.begin = b;
-        chunk.end = std::min(b + chunk_size, last);
-        fresh.chunk.push_back(std::move(chunk));
+      const auto block = [&](std::uint32_t q) { return fresh.candidate[q].particle / WallContacts::chunk_rows; };
+      for (std::uint32_t q = first; q < last; ++q) {
+        if (q == first || block(q) != block(q - 1)) {
+          fresh.chunk.emplace_back();
+          fresh.chunk.back().wall = w;
+          fresh.chunk.back().begin = q;
+        }
+        fresh.chunk.back().end = q + 1;
       }
     }
     fresh.acts.assign(fresh.candidate.size(), 0);

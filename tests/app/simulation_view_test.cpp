@@ -33,17 +33,18 @@ TEST(SimulationView, EveryShapeOfAWallIsStored) {
       {"spheres", dem::make_glued_grains({point, axis}, {0.5, 0.25})},
       {"mesh", dem::make_mesh_wall(tetrahedron())}};
   std::set<std::size_t> rows;
-  dem::Rheometer rheometer;
-  rheometer.setup.materials = {{"glass", 2500, 63e9, 0.2}};
-  rheometer.setup.interactions = {{{}}};
+  dem::Scene scene;
+  scene.setup.materials = {{"glass", 2500, 63e9, 0.2}};
+  scene.setup.interactions = {{{}}};
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     rows.insert(shapes[k].second.index());
-    rheometer.setup.walls.push_back({"wall " + std::to_string(k), 0, shapes[k].second, {}});
+    scene.setup.walls.push_back({"wall " + std::to_string(k), 0, shapes[k].second, {}});
+    scene.roles.push_back(dem::WallRole::vessel);
   }
   EXPECT_EQ(rows.size(), std::variant_size_v<dem::WallShape>);
 
   const auto path = std::filesystem::path(testing::TempDir()) / "every_shape.h5";
-  const jam::RunInfo info = run_info(CaseFile{}, rheometer, {});
+  const jam::RunInfo info = run_info(CaseFile{}, scene, {});
   EXPECT_NO_THROW(jam::validate(info));
   jam::SnapshotWriter::create(path, info);
   const std::vector<jam::Wall> walls = jam::open_jamscope_file(path).info.walls;

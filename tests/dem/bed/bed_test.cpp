@@ -9,7 +9,7 @@
 #include "libdem/bed/rest.hpp"
 #include "libdem/case/size_distribution.hpp"
 #include "libdem/errors.hpp"
-#include "libdem/rheometer/rheometer.hpp"
+#include "libdem/scene/scene.hpp"
 #include "tests/dem/case/ft4.hpp"
 #include "tests/dem/grains.hpp"
 
@@ -175,7 +175,7 @@ TEST(Bed, ThatNothingSupportsIsRefused) {
 // The bed of the paper's case A at full size: 25 mm vessel, 52 mm deep, true stiffness. Minutes per bed.
 TEST(BedValidation, FullSizeBedsOfTwoSeedsAgree) {
   Case c = ft4('a');
-  const Rheometer rheometer = make_rheometer(c);
+  const Scene rheometer = make_scene(c);
   const BedRegion region{CylinderRegion{0.5 * c.vessel.diameter}};
   std::vector<BedReport> reports;
   for (const std::uint64_t seed : {1, 2}) {

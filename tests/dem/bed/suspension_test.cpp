@@ -4,7 +4,7 @@
 #include <omp.h>
 
 #include "libdem/errors.hpp"
-#include "libdem/rheometer/rheometer.hpp"
+#include "libdem/scene/scene.hpp"
 #include "tests/dem/case/ft4.hpp"
 
 namespace dem {
@@ -21,7 +21,7 @@ Case quick() {
 
 TEST(Suspension, GrainsTouchNeitherEachOtherNorAWall) {
   const Case c = quick();
-  const Rheometer r = make_rheometer(c);
+  const Scene r = make_scene(c);
   const Particles p = random_suspension(r.setup, c.bed, 0, CylinderRegion{12.5e-3}, 4000, {});
   ASSERT_EQ(p.size(), 4000u);
   for (std::size_t i = 0; i < p.size(); ++i) {

@@ -1,23 +1,12 @@
 // Where the grains of a bed are placed: an upright prism that stands on z = 0 and is open above. It bounds the grains only
 // while they are placed; from then on the walls of the setup do, or nothing, and grains spread to a heap.
 #pragma once
-#include <variant>
-
 #include "libdem/case/case.hpp"
 
 namespace dem {
 
-// A circle about the z axis.
-struct CylinderRegion {
-  double radius = 0;  // m
-};
-
-// A rectangle.
-struct BoxRegion {
-  double x_low = 0, x_high = 0, y_low = 0, y_high = 0;  // m
-};
-
-using BedRegion = std::variant<CylinderRegion, BoxRegion>;
+// Of a case: its box, or the vessel.
+BedRegion bed_region(const Case& c);
 
 // m^2, of the cross-section.
 double cross_section(const BedRegion& region);

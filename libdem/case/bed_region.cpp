@@ -1,10 +1,15 @@
-#include "libdem/bed/region.hpp"
+#include "libdem/case/bed_region.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace dem {
+
+BedRegion bed_region(const Case& c) {
+  if (c.bed.box) return *c.bed.box;
+  return CylinderRegion{0.5 * c.vessel.diameter};
+}
 
 double cross_section(const BedRegion& region) {
   if (const auto* circle = std::get_if<CylinderRegion>(&region))
