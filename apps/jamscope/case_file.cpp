@@ -173,8 +173,6 @@ void read_bed(Section bed, Document& document, dem::Bed& b) {
   bed.choice("sizes", {{"number", Sizes::by_number}, {"mass", Sizes::by_mass}}, b.sizes, optional);
   bed.quantity("depth", dimension::length, b.depth);
   bed.whole_number("seed", b.seed, optional);
-  using Sizes = dem::Bed::Sizes;
-  bed.choice("sizes", {{"by_number", Sizes::by_number}, {"by_mass", Sizes::by_mass}}, b.sizes, optional);
   std::vector<double> x, y;
   const bool has_x = bed.quantities("x", dimension::length, x, optional);
   const bool has_y = bed.quantities("y", dimension::length, y, optional);
