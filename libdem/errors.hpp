@@ -15,7 +15,7 @@ struct GeometryError : CaseError {
   using CaseError::CaseError;
 };
 
-// The physics stopped the run: a NaN, a runaway overlap, a grain that left the vessel. Names grain, time and likely cause.
+// The physics stopped the run: a NaN, a runaway overlap, a lost grain. Names grain, time and likely cause.
 struct PhysicsError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

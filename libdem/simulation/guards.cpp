@@ -103,7 +103,7 @@ void check_motion(const GuardInput& in) {
       throw PhysicsError("the motion of " + place(in, i) + " is no longer a number; " + largest_contact(in, i) +
                          "; likely cause: a time step above the stable limit");
     if ((p.position[i].array() < in.setup.low.array()).any() || (p.position[i].array() > in.setup.high.array()).any())
-      throw PhysicsError(place(in, i) + " has left the vessel with speed " + number(p.velocity[i].norm()) + " m/s; " +
+      throw PhysicsError(place(in, i) + " has left the domain with speed " + number(p.velocity[i].norm()) + " m/s; " +
                          largest_contact(in, i) +
                          "; likely cause: a time step above the stable limit or a gap that pinched it through a wall");
   }

@@ -8,6 +8,7 @@
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/check.hpp"
 #include "libdem/errors.hpp"
+#include "libjam/snapshot/reader.hpp"
 #include "tests/app/program.hpp"
 
 namespace jamscope {
@@ -191,6 +192,38 @@ TEST(WallTables, ShippedSceneRunsFromFileToReport) {
   EXPECT_THAT(run_program("inspect " + out + "/run.h5").out, HasSubstr("plate"));
   EXPECT_GT(text_of(out + "/report.html").size(), 10000u);
   EXPECT_EQ(run_program("analyze " + out + "/run.h5 -q -o " + (folder / "again")).code, 0);
+}
+
+// A piston that throws grains out of the domain: the run stops with code 1 and a message, and the state it stopped in is the last
+// frame of a sound file.
+TEST(WallTables, ARunThatPhysicsStopsKeepsItsLastFrame) {
+  Scratch folder;
+  std::ofstream(folder / "piston.toml") << head << R"(
+[wall.pipe]
+material = "glass"
+kind = "cylinder"
+radius = "4 mm"
+[wall.piston]
+material = "glass"
+kind = "disc"
+radius = "4 mm"
+velocity = ["0 m/s", "0 m/s", "20 m/s"]
+)";
+  const std::string out = folder / "out";
+  const Outcome run = run_program("simulate " + (folder / "piston.toml") + " -o " + out +
+                                  " -q --threads 1 --bed-cache '' --set bed.depth='2 mm' --set bed.x='[\"-2 mm\", \"2 mm\"]'"
+                                  " --set bed.y='[\"-2 mm\", \"2 mm\"]' --set output.frame_interval='0.5 ms'");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_THAT(run.err, testing::AllOf(HasSubstr("grain"), HasSubstr("has left the domain"), HasSubstr("t = ")));
+  const jam::SnapshotSource source = jam::open_jamscope_file(out + "/run.h5");
+  EXPECT_TRUE(source.warnings.empty());
+  ASSERT_GT(source.frames, 1u);
+  const jam::Snapshot last = source.read(source.frames - 1);
+  EXPECT_NE(last.step % 10000, 0u) << "frames are 10,000 steps apart, the last one is out of turn";
+  double farthest = 0;
+  for (const jam::Vec3f& x : last.particles.position) farthest = std::max(farthest, double(x.z()));
+  EXPECT_GT(farthest, 0.04);
+  EXPECT_GT(text_of(out + "/summary.json").size(), 1000u);
 }
 
 }  // namespace

@@ -190,7 +190,7 @@ TEST(Simulation, ALostGrainStopsTheRunWithItsNameAndPlace) {
     FAIL() << "nothing was thrown";
   } catch (const PhysicsError& e) {
     EXPECT_NE(std::string(e.what()).find("grain 42"), std::string::npos) << e.what();
-    EXPECT_NE(std::string(e.what()).find("left the vessel"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("left the domain"), std::string::npos) << e.what();
   }
 }
 
