@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <numeric>
 
 #include "libdem/bed/packing.hpp"
 #include "libdem/bed/rest.hpp"
@@ -13,6 +15,7 @@
 #include "libdem/case/size_distribution.hpp"
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/errors.hpp"
+#include "libdem/simulation/selection.hpp"
 
 namespace dem {
 namespace {
@@ -180,27 +183,12 @@ void stop(Particles& p) {
   for (Vec3& w : p.angular_velocity) w.setZero();
 }
 
-// Removes grains whose centre is above `height`; contacts of the others stay.
+// Removes grains whose centre is above `height`; ids count on from 1.
 State cut(const State& state, double height) {
-  State kept;
-  std::vector<std::uint32_t> row(state.particles.size(), UINT32_MAX);
-  const Particles& p = state.particles;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (p.position[i].z() <= height) {
-      row[i] = std::uint32_t(kept.particles.size());
-      kept.particles.add(row[i] + 1, p.material[i], p.radius[i], p.position[i], p.velocity[i], p.angular_velocity[i]);
-    }
-  for (State::Pair c : state.pairs)
-    if (row[c.i] != UINT32_MAX && row[c.j] != UINT32_MAX) {
-      c.i = row[c.i];
-      c.j = row[c.j];
-      kept.pairs.push_back(c);
-    }
-  for (State::WallPair c : state.wall_pairs)
-    if (row[c.i] != UINT32_MAX) {
-      c.i = row[c.i];
-      kept.wall_pairs.push_back(c);
-    }
+  std::vector<bool> below;
+  for (const Vec3& x : state.particles.position) below.push_back(x.z() <= height);
+  State kept = selection(state, below);
+  std::iota(kept.particles.id.begin(), kept.particles.id.end(), 1u);
   return kept;
 }
 

@@ -66,7 +66,7 @@ struct WallContact {
 struct WallCandidate {
   static constexpr std::size_t capacity = 8;  // touches of one sphere with one wall; more stop the run
   std::uint32_t particle, wall;
-  std::uint32_t triangle_begin, triangle_end;  // rows of WallContacts::triangles
+  std::uint32_t part_begin, part_end;  // rows of WallContacts::parts: triangles, glued grains
   PairConstants<double> constants;
   std::uint32_t size = 0;
   std::array<WallContact, capacity> contact;  // the first `size`, sorted by feature
@@ -75,7 +75,7 @@ struct WallCandidate {
 struct WallContacts {
   std::vector<WallCandidate> candidate;  // sorted by wall, then particle
   std::vector<std::uint8_t> acts;        // per candidate: number of formed contacts
-  std::vector<std::uint32_t> triangles;
+  std::vector<std::uint32_t> parts;
   std::vector<std::uint32_t> of_particle_begin, of_particle;  // compressed rows: candidates of each particle, ascending
   // Candidates are handled in chunks of one wall and so many rows of grains each, whose loads are added in order, likewise.
   static constexpr std::uint32_t chunk_rows = 256;

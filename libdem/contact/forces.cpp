@@ -427,7 +427,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
     WallCandidate& candidate = walls.candidate[q];
     const double radius = p.radius[candidate.particle];
     nearest(wall, pose, p.position[candidate.particle], radius - last_overlap(law, in, candidate),
-            std::span(walls.triangles).subspan(candidate.triangle_begin, candidate.triangle_end - candidate.triangle_begin),
+            std::span(walls.parts).subspan(candidate.part_begin, candidate.part_end - candidate.part_begin),
             touches, chunk.scratch);
     if (touches.empty() && candidate.size == 0) continue;  // acts is 0 already
     if (touches.size() > WallCandidate::capacity) {

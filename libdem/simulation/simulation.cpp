@@ -192,10 +192,10 @@ struct Simulation::Engine {
         WallCandidate c{};
         c.particle = i;
         c.wall = w;
-        c.triangle_begin = std::uint32_t(fresh.triangles.size());
-        candidate_parts(setup.walls[w], poses[w], p.position[i], reach, fresh.triangles);
-        c.triangle_end = std::uint32_t(fresh.triangles.size());
-        if (std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.triangle_begin == c.triangle_end) continue;
+        c.part_begin = std::uint32_t(fresh.parts.size());
+        candidate_parts(setup.walls[w], poses[w], p.position[i], reach, fresh.parts);
+        c.part_end = std::uint32_t(fresh.parts.size());
+        if (std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
         c.constants = wall_constants(materials(p.material[i], setup.walls[w].material),
                                      {p.radius[i], mass[i], inertia[i]});
         if (const auto known = old.find({w, i}); known != old.end()) {

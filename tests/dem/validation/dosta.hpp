@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libdem/contact/laws.hpp"
+#include "libdem/simulation/selection.hpp"
 #include "libdem/simulation/simulation.hpp"
 #include "tests/support/csv.hpp"
 
@@ -30,28 +31,13 @@ inline dem::Setup dosta_setup(double step) {
   return setup;
 }
 
-// The state of those grains for which keep(row) holds, with the contacts among them; a fresh start at step 0.
+// The grains for which keep(row) holds; step 0.
 template <class Keep>
 dem::State kept(const dem::State& state, Keep keep) {
-  dem::State result;
-  std::vector<std::uint32_t> row(state.particles.size(), UINT32_MAX);
-  const dem::Particles& p = state.particles;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (keep(i)) {
-      row[i] = std::uint32_t(result.particles.size());
-      result.particles.add(p.id[i], p.material[i], p.radius[i], p.position[i], p.velocity[i], p.angular_velocity[i]);
-    }
-  for (dem::State::Pair c : state.pairs)
-    if (row[c.i] != UINT32_MAX && row[c.j] != UINT32_MAX) {
-      c.i = row[c.i];
-      c.j = row[c.j];
-      result.pairs.push_back(c);
-    }
-  for (dem::State::WallPair c : state.wall_pairs)
-    if (row[c.i] != UINT32_MAX) {
-      c.i = row[c.i];
-      result.wall_pairs.push_back(c);
-    }
+  std::vector<bool> mask(state.particles.size());
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = keep(i);
+  dem::State result = dem::selection(state, mask);
+  result.step = 0;
   return result;
 }
 

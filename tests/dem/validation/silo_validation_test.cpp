@@ -1,4 +1,4 @@
-// A flat cylinder above a cone discharges 4 mm grains through an orifice (Dosta et al. 2024, case 1, material M1). A silo's rate does
+// A cylinder above a cone discharges 4 mm grains through an orifice (Dosta et al. 2024, case 1, material M1). A silo's rate does
 // not depend on how much is in it as long as the outlet is covered well, so we fill it with less and compare the rates at the
 // same filling.
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ constexpr double radius = 2e-3, silo_radius = 0.1;  // m
 struct Outlet {
   double radius, lip, cone_height;  // m; z of the lip
 };
-constexpr Outlet large{0.03, -0.0554222, 0.07}, small{0.02, -0.0593008, 0.08};
+constexpr Outlet large{0.03, -0.0554222, 0.07};
 
 dem::Setup silo(const Outlet& outlet, bool closed, double step) {
   dem::Setup setup = support::dosta_setup(step);
@@ -102,28 +102,15 @@ double rate(const support::Curve& curve, double from, double to) {
 
 TEST(DostaSiloValidation, ALargeOrificeDischargesAsInOtherCodes) {
   omp_set_num_threads(2);
-  const support::Curve curve = discharge(large, filled(large, 30000), 9000, 2);
+  const support::Curve curve = discharge(large, filled(large, 27000), 9000, 2);
   support::keep_curve(curve, "silo_large_M1", "particles_above_orifice");
-  const double from = 27000, to = 10000;
+  const double from = 24000, to = 10000;
   const double liggghts = rate(support::dosta_curve("silo_large_M1", "LIGGGHTS"), from, to);
   const double musen = rate(support::dosta_curve("silo_large_M1", "MUSEN"), from, to);
   const double ours = rate(curve, from, to);
   std::printf("rate from %.0f to %.0f grains: %.1f/s; LIGGGHTS %.1f/s, MUSEN %.1f/s\n", from, to, ours, liggghts, musen);
   // Another bed: 7 % (the codes of the paper differ by 5 %).
   EXPECT_NEAR(ours / (0.5 * (liggghts + musen)), 1, 0.07);
-}
-
-TEST(DostaSiloValidation, TheRatesOfTwoOrificesHaveTheirRatio) {
-  omp_set_num_threads(2);
-  const auto steady = [](const Outlet& outlet, std::size_t count, double from, double to) {
-    const support::Curve curve = discharge(outlet, filled(outlet, count), std::size_t(to), 2);
-    if (outlet.radius == small.radius) support::keep_curve(curve, "silo_small_M1", "particles_above_orifice");
-    return rate(curve, from, to);
-  };
-  const double wide = steady(large, 20000, 18000, 12000), narrow = steady(small, 20000, 18500, 15500);
-  std::printf("rates %.1f/s and %.1f/s, ratio %.3f\n", wide, narrow, wide / narrow);
-  // 3.10 +- 0.06 in the codes of the paper (Beverloo's law); our fillings are lower and shorter: +- 0.15.
-  EXPECT_NEAR(wide / narrow, 3.1, 0.15);
 }
 
 }  // namespace
