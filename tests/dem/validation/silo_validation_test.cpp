@@ -89,6 +89,8 @@ support::Curve discharge(const Outlet& outlet, State state, std::size_t least, d
       if (k < 4) count();
     }
     time += sim.time();
+    std::printf("t %.3f s: %zu grains above the lip\n", time, above);
+    std::fflush(stdout);
     const State now = sim.state();
     state = support::kept(now, [&](std::size_t i) { return now.particles.position[i].z() > outlet.lip - 0.03; });
   } while (above > least && time < longest);
