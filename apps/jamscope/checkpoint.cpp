@@ -17,7 +17,7 @@ namespace {
 using Vec3 = dem::Vec3;
 constexpr const char* checkpoint_format = "jamscope-checkpoint";
 constexpr const char* bed_format = "jamscope-bed";
-constexpr std::uint32_t state_version = 2;
+constexpr std::uint32_t state_version = 3;
 
 // TABLES of what a state file stores of each row of a struct: data set, member, unit, meaning. A new member is one row here.
 template <class Row, class Value>
@@ -118,6 +118,18 @@ void write_state(jam::h5::File& f, const dem::State& s) {
   f.write("/state/particles/torque", s.torque, "N m", "sum of torques; empty before the first step");
   write_columns(f, "/state/pairs/", s.pairs, pair_columns);
   write_columns(f, "/state/walls/", s.wall_pairs, wall_pair_columns);
+  if (!s.force.empty()) {
+    const dem::State::Layout& layout = s.layout;
+    f.make_group("/state/layout");
+    f.set_attribute("/state/layout", "listed_step", layout.listed_step);
+    f.set_attribute("/state/layout", "skin", layout.skin);
+    f.set_attribute("/state/layout", "odometer", layout.odometer);
+    f.set_attribute("/state/layout", "next_look", layout.next_look);
+    f.write("/state/layout/order", layout.order, "1", "row in particles for each row of the run");
+    f.write("/state/layout/listed", layout.listed, "m", "centres when the lists were built, rows of the run");
+    f.write("/state/layout/first", layout.first, "1", "row of the run of each lane's first grain");
+    f.write("/state/layout/second", layout.second, "1", "row of the run of each lane's second grain");
+  }
   const dem::State::Ledger& l = s.ledger;
   if (l.last_power.empty()) return;
   f.make_group("/state/ledger");
@@ -147,6 +159,17 @@ dem::State read_state(const jam::h5::File& f) {
     if (size != n) f.fail("/state/particles", "columns of different length, expected " + std::to_string(n) + " rows");
   read_columns(f, "/state/pairs/", s.pairs, pair_columns);
   read_columns(f, "/state/walls/", s.wall_pairs, wall_pair_columns);
+  if (f.exists("/state/layout")) {
+    dem::State::Layout& layout = s.layout;
+    layout.listed_step = f.attribute<std::uint64_t>("/state/layout", "listed_step");
+    layout.skin = f.attribute<double>("/state/layout", "skin");
+    layout.odometer = f.attribute<double>("/state/layout", "odometer");
+    layout.next_look = f.attribute<double>("/state/layout", "next_look");
+    layout.order = f.read<std::uint32_t>("/state/layout/order");
+    layout.listed = f.read<Vec3>("/state/layout/listed");
+    layout.first = f.read<std::uint32_t>("/state/layout/first");
+    layout.second = f.read<std::uint32_t>("/state/layout/second");
+  }
   if (!f.exists("/state/ledger")) return s;
   dem::State::Ledger& l = s.ledger;
   for (const auto& [name, member] : spent_columns) l.spent.*member = f.attribute<double>("/state/ledger", name);

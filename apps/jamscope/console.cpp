@@ -64,7 +64,7 @@ std::string progress_text(const Progress& p, double left) {
   if (std::isfinite(p.largest_force)) add(fmt::format("force {:.3g} N", p.largest_force));
   if (p.jammed) add(fmt::format("jammed {}", *p.jammed));
   if (p.events) add(fmt::format("events {}", *p.events));
-  if (std::isfinite(left)) add("left " + duration_text(left));
+  if (std::isfinite(left)) add((p.at_most ? "left at most " : "left ") + duration_text(left));
   return text;
 }
 

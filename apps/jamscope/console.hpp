@@ -24,6 +24,7 @@ struct Progress {
   double largest_overlap = std::numeric_limits<double>::quiet_NaN();  // over particle radius
   double largest_force = std::numeric_limits<double>::quiet_NaN();    // N, largest compressive force
   std::optional<std::uint64_t> jammed, events;
+  bool at_most = false;  // `total` is an upper bound
 };
 
 // The line for people, for example

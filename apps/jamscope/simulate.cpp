@@ -64,6 +64,7 @@ dem::SettledBed settled_bed(const CaseFile& file, const dem::Scene& scene, const
   const auto begin = Clock::now();
   Progress progress;
   progress.unit = "s";
+  progress.at_most = true;  // stages end when the grains are at rest
   const auto report = [&](const dem::BedProgress& p) {
     if (!console.due()) return;
     progress.stage = "bed: " + p.stage;

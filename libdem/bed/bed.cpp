@@ -27,9 +27,11 @@ constexpr double softness = 2e4;
 constexpr double strongest = 10;
 // Grains are poured from so many diameters above.
 constexpr double pouring_height = 25;
-// By how much the modulus grows from stage to stage, about, and how many periods of the slowest vibration a stage lasts, and
-// steps: grains of shallow beds too need their time to roll into place.
-constexpr double stiffening = 5, periods = 2, least_steps = 4000;
+// By how much the modulus grows from stage to stage, about, and how many periods of the slowest vibration a stage lasts at least.
+// A bed swells as its overlaps shrink, and grains that lose a support by it take tens of milliseconds to roll on to the next one.
+// The first stages shrink the most and have large steps, so a stage lasts that long where so many steps are enough: what rolls
+// in time does not have to be waited for at the small steps of the true stiffness.
+constexpr double stiffening = 5, periods = 2, rolling_steps = 12000;
 // Of the local stable limit of the step. At twice that the forming and breaking of adhesive contacts feeds a bed as much energy
 // as damping takes.
 constexpr double stable_share = 0.2;
@@ -39,6 +41,7 @@ constexpr double calming = 0.3;
 constexpr double inelastic = 0.3;
 // Rounds of rest and probe, each longer than the one before: most beds need few, a grain that hops on the surface many.
 constexpr int most_rounds = 20;
+constexpr double first_rest = 4000;  // steps
 constexpr double patience = 1.25;
 
 constexpr double unchanged = std::numeric_limits<double>::infinity();   // Pa
@@ -297,7 +300,7 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, c
     for (State::Pair& c : state.pairs) c.spring *= shrink;
     for (State::WallPair& c : state.wall_pairs) c.spring *= shrink;
     const double step = stable_step(harder, g, stiffening * strongest * g.load(), calm_speed);
-    const double length = std::max(periods * slowest_period(harder, g), least_steps * step);
+    const double length = std::max(periods * slowest_period(harder, g), std::min(0.5 * roll, rolling_steps * step));
     state = recipe.run(harder, std::move(state),
                        {"stiffening to " + pressure(modulus), step, calming, length, 2 * length, rest});
   }
@@ -308,13 +311,11 @@ SettledBed make_bed(const Setup& setup, const Bed& bed, std::uint8_t material, c
   still.step = std::min(step, bearable_step(still, state));
   const Setup damped = softened(setup, unchanged, inelastic);
   RestProbe probe;
-  double length = std::max(periods * slowest_period(still, g), least_steps * still.step);
+  double length = std::max(periods * slowest_period(still, g), std::min(0.5 * roll, first_rest * still.step));
   for (int round = 0; round < most_rounds; ++round, length *= patience) {
     state = recipe.run(damped, std::move(state), {"resting", step, calming, length, length, 0});
     probe = recipe.probe(still, state);
     if (probe.at_rest()) break;
-    // What rolls need not stop for the next round, but what spins about a single contact never would.
-    stop(state.particles);
   }
   state = probe.state;
   if (!probe.at_rest()) refuse(probe);

@@ -2,53 +2,79 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "libdem/contact/ledger.hpp"
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/contact/wall_load.hpp"
 #include "libdem/geometry/walls.hpp"
-#include "libdem/neighbors/pair_list.hpp"
-#include "libdem/particles/particles.hpp"
+#include "libdem/particles/grain_rows.hpp"
 
 namespace dem {
 
-// What both kinds of contact remember between steps.
+// What a contact remembers between steps.
 struct ContactMemory {
   Vec3 spring = Vec3::Zero();  // m, tangential
-  double contact_radius = 0;   // m, of the last evaluation
+  double contact_radius = 0;   // m, of the last evaluation; > 0 exactly where there is a contact
   std::uint64_t birth_step = 0;
-  bool touched = false;
 };
 
 struct PairForce {
-  Vec3 force;               // N on i
-  Vec3 torque_i, torque_j;  // N m
+  Vec3 tangential;          // N on the first grain
   double elastic, damping;  // N along the normal, > 0 pushes apart
   bool sliding;
 };
 
+// Pairs of grains that touch or may touch before the list is built again, in blocks of eight lanes. A pair keeps its lane until
+// then; the sums of forces go in the order of the lanes. Lanes that are left over hold a phantom as their second grain.
 struct PairContacts {
-  PairList list;
-  std::vector<ContactMemory> memory;  // [P]
-  std::vector<Vec3> rolling;          // [P] N m, elastic rolling torque on i; empty where the law has none
-  std::vector<LastForces> last;       // [P] empty where no ledger is kept
-  std::vector<PairForce> result;      // [P] of the pairs that act
-  std::vector<std::uint8_t> acts;     // [P] 1 for a formed contact
-  struct Bodies {
-    double effective_radius, effective_mass, effective_inertia, adhesion_length;
+  static constexpr std::size_t width = 8;
+  using Column = std::array<double, width>;
+  struct alignas(64) Block {
+    std::array<std::uint32_t, width> first, second;                             // rows of grains
+    std::array<Column, 3> spring{};                                             // m, tangential
+    Column contact_radius{};                                                    // m, as in ContactMemory
+    Column effective_radius{}, effective_mass{}, effective_inertia{}, adhesion_length{};  // as in PairConstants
   };
-  std::vector<Bodies> bodies;               // [P]
-  std::vector<std::uint32_t> material_pair;  // [P] index into MaterialTable::pair
-  double reach_beyond_touch = 0;             // m, gap across which contacts of the law may form
-  // Pairs are handled in chunks of the first grains' rows, whose sums are added in order: they depend neither on the number of
-  // threads nor on which pairs that do not touch are in the list.
-  static constexpr std::size_t chunk_rows = 128;
+  struct alignas(64) RollingSprings {
+    std::array<Column, 3> torque{};  // N m, elastic part of the one on the first grain
+  };
+  // What decides whether a block has to be looked at.
+  struct Head {
+    bool acts = false;  // a lane is a contact
+    // m: while none is, none can become one before the odometer (ForceInput) has come to here.
+    double wake = -std::numeric_limits<double>::infinity();
+    std::uint32_t material_pair = 0;  // index into MaterialTable::pair, of all lanes
+    std::uint32_t crossing = 0;       // first row of PairContacts::crossing, of a block whose pairs cross chunks
+  };
+  std::vector<Block> block;
+  std::vector<Head> head;                     // [blocks]
+  std::vector<std::uint64_t> birth_step;      // [lanes]
+  std::vector<RollingSprings> rolling;        // [blocks] empty where the law has none
+  std::vector<LastForces> last;               // [lanes] empty where no ledger is kept
+  std::vector<PairForce> result;              // [lanes] of the last evaluation that recorded
+  // Of pairs whose second grain belongs to another chunk: what acts on it. And for each chunk which those are.
+  std::vector<ForceRow> crossing;
+  struct Incoming {
+    std::uint32_t row, crossing, block;
+  };
+  std::vector<Incoming> incoming;
+
+  // Pairs belong to the chunk of their first grain: [begin, inner_end) have the second there too, [inner_end, end) cross.
   struct Chunk {
+    std::uint32_t begin = 0, inner_end = 0, end = 0;
+    std::uint32_t incoming_begin = 0, incoming_end = 0;
     double largest_overlap = 0;  // over the smaller radius
     LedgerSums ledger;
   };
   std::vector<Chunk> chunk;
+
+  std::size_t lanes() const { return width * block.size(); }
+  std::uint32_t first(std::size_t lane) const { return block[lane / width].first[lane % width]; }
+  std::uint32_t second(std::size_t lane) const { return block[lane / width].second[lane % width]; }
+  double contact_radius(std::size_t lane) const { return block[lane / width].contact_radius[lane % width]; }
+  bool acts(std::size_t lane) const { return contact_radius(lane) > 0; }
 };
 
 struct WallContact {
@@ -56,10 +82,10 @@ struct WallContact {
   Vec3 rolling = Vec3::Zero();  // N m, elastic rolling torque on the particle
   LastForces last;
   WallTouch touch{};
-  Vec3 force, torque;       // N, N m on the particle
   Vec3 tangential;          // N on the particle
   double elastic, damping;  // N
-  bool acts = false, sliding = false;
+  bool sliding = false;
+  bool acts() const { return memory.contact_radius > 0; }
 };
 
 // A grain that may touch a wall before the list is built again.
@@ -68,19 +94,17 @@ struct WallCandidate {
   std::uint32_t particle, wall;
   std::uint32_t part_begin, part_end;  // rows of WallContacts::parts: triangles, glued grains
   PairConstants<double> constants;
+  double wake = -std::numeric_limits<double>::infinity();  // m: while it is not near the wall, as in PairContacts::Head
   std::uint32_t size = 0;
   std::array<WallContact, capacity> contact;  // the first `size`, sorted by feature
 };
 
 struct WallContacts {
-  std::vector<WallCandidate> candidate;  // sorted by wall, then particle
-  std::vector<std::uint8_t> acts;        // per candidate: number of formed contacts
+  std::vector<WallCandidate> candidate;  // sorted by chunk of the grain, wall, grain
   std::vector<std::uint32_t> parts;
-  std::vector<std::uint32_t> of_particle_begin, of_particle;  // compressed rows: candidates of each particle, ascending
-  // Candidates are handled in chunks of one wall and so many rows of grains each, whose loads are added in order, likewise.
-  static constexpr std::uint32_t chunk_rows = 256;
+  // Candidates are handled in chunks of one wall and one chunk of grains, whose loads are added in order.
   struct Chunk {
-    std::uint32_t wall, begin, end;
+    std::uint32_t wall = 0, begin = 0, end = 0;
     WallLoad load;
     std::array<WallLoad, facet_labels> load_of_label;  // the part of `load` on the triangles of each label; meshes only
     double largest_overlap = 0;
@@ -90,6 +114,8 @@ struct WallContacts {
     std::vector<MeshTouch> scratch;
   };
   std::vector<Chunk> chunk;
+  std::vector<std::uint32_t> chunk_begin;  // [chunks of grains + 1] rows of `chunk`
+  double skin = 0;                         // m, how far beyond a grain's surface the candidate parts reach
 };
 
 }  // namespace dem

@@ -18,6 +18,9 @@ inline Pack select(const Pack::mask_type& mask, const Pack& a, const Pack& b) {
   return r;
 }
 
+inline bool all(bool mask) { return mask; }
+inline bool all(const Pack::mask_type& mask) { return std::experimental::all_of(mask); }
+
 inline double square_root(double a) { return std::sqrt(a); }
 inline Pack square_root(const Pack& a) { return std::experimental::sqrt(a); }
 inline double larger(double a, double b) { return a > b ? a : b; }

@@ -67,7 +67,6 @@ PairList build_pair_list(const std::vector<Vec3>& position, const std::vector<do
   PairList list;
   const std::size_t n = position.size();
   list.begin.assign(n + 1, 0);
-  list.incoming_begin.assign(n + 1, 0);
   if (n == 0) return list;
   const double largest = *std::max_element(radius.begin(), radius.end());
   const double mean = std::accumulate(radius.begin(), radius.end(), 0.0) / double(n);
@@ -75,9 +74,11 @@ PairList build_pair_list(const std::vector<Vec3>& position, const std::vector<do
 
   // The larger grain of a pair looks for the smaller one, as far as its own size needs: a few large grains among small ones cost
   // no more than the small ones that they touch.
-  std::vector<std::vector<std::uint32_t>> found(n);
+  constexpr std::size_t rows = 256;  // are handled together
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> found((n + rows - 1) / rows);
 #pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t r = 0; r < found.size(); ++r)
+  for (std::size_t i = r * rows; i < std::min((r + 1) * rows, n); ++i) {
     const Cell c = grid.cell_of(position[i]);
     const std::int64_t reach = std::max<std::int64_t>(1, std::int64_t(std::ceil((2 * radius[i] + skin) / grid.edge)));
     const auto low = [&](std::size_t k) { return std::max<std::int64_t>(c[k] - reach, 0); };
@@ -90,33 +91,24 @@ PairList build_pair_list(const std::vector<Vec3>& position, const std::vector<do
             const std::uint32_t j = grid.member[m];
             if (radius[j] > radius[i] || (radius[j] == radius[i] && j <= i)) continue;
             const double near = radius[i] + radius[j] + skin;
-            if ((position[i] - position[j]).squaredNorm() < near * near) found[i].push_back(j);
+            if ((position[i] - position[j]).squaredNorm() < near * near) found[r].emplace_back(std::min(std::uint32_t(i), j), std::max(std::uint32_t(i), j));
           }
         }
   }
 
-  const auto for_each_found = [&](auto f) {
-    for (std::uint32_t i = 0; i < n; ++i)
-      for (const std::uint32_t j : found[i]) f(std::min(i, j), std::max(i, j));
-  };
-  for_each_found([&](std::uint32_t i, std::uint32_t j) {
-    ++list.begin[i + 1];
-    ++list.incoming_begin[j + 1];
-  });
+  for (const auto& pairs : found)
+    for (const auto& [i, j] : pairs) ++list.begin[i + 1];
   for (std::size_t i = 0; i < n; ++i) list.begin[i + 1] += list.begin[i];
   list.first.resize(list.begin[n]);
   list.second.resize(list.begin[n]);
   std::vector<std::uint32_t> at(list.begin.begin(), list.begin.end() - 1);
-  for_each_found([&](std::uint32_t i, std::uint32_t j) { list.second[at[i]++] = j; });
+  for (const auto& pairs : found)
+    for (const auto& [i, j] : pairs) list.second[at[i]++] = j;
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < n; ++i) {
     std::sort(list.second.begin() + list.begin[i], list.second.begin() + list.begin[i + 1]);
     std::fill(list.first.begin() + list.begin[i], list.first.begin() + list.begin[i + 1], std::uint32_t(i));
   }
-  for (std::size_t j = 0; j < n; ++j) list.incoming_begin[j + 1] += list.incoming_begin[j];
-  list.incoming.resize(list.size());
-  std::vector<std::uint32_t> next(list.incoming_begin.begin(), list.incoming_begin.end() - 1);
-  for (std::uint32_t p = 0; p < list.size(); ++p) list.incoming[next[list.second[p]]++] = p;
   return list;
 }
 

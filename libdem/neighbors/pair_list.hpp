@@ -7,14 +7,11 @@
 
 namespace dem {
 
-// Pairs (i, j), i < j, whose surfaces are less than `skin` apart, sorted by i, then j; in compressed rows:
-// the pairs of i are [begin[i], begin[i+1]). And the same pairs seen from j: `incoming` lists, for each j, the pair
-// numbers in ascending order.
+// Pairs (i, j), i < j, whose surfaces are less than `skin` apart, sorted by i, then j, in compressed rows: the pairs of i are
+// [begin[i], begin[i+1]).
 struct PairList {
-  std::vector<std::uint32_t> begin;           // [N+1]
-  std::vector<std::uint32_t> first, second;   // [P] i and j
-  std::vector<std::uint32_t> incoming_begin;  // [N+1]
-  std::vector<std::uint32_t> incoming;        // [P]
+  std::vector<std::uint32_t> begin;          // [N+1]
+  std::vector<std::uint32_t> first, second;  // [P] i and j
   std::size_t size() const { return first.size(); }
 };
 

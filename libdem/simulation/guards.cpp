@@ -14,8 +14,8 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 std::string place(const GuardInput& in, std::size_t i) {
-  const Vec3 mm = 1e3 * in.particles.position[i];
-  return "grain " + std::to_string(in.particles.id[i]) + " at (" + number(mm.x()) + ", " + number(mm.y()) + ", " +
+  const Vec3 mm = 1e3 * in.grains[i].position();
+  return "grain " + std::to_string(in.id[i]) + " at (" + number(mm.x()) + ", " + number(mm.y()) + ", " +
          number(mm.z()) + ") mm, t = " + number(in.time) + " s";
 }
 
@@ -27,10 +27,35 @@ struct Contact {
   std::string with;                             // "grain 17", "wall 'blade'"
 };
 
+// N, without damping.
+double elastic_force(const GuardInput& in, const PairConstants<double>& c, double overlap) {
+  return with_part<NormalLaws>(in.setup.law.normal, [&](auto part) { return part.evaluate(overlap, c).elastic; });
+}
+
+struct PairGeometry {
+  std::uint32_t i, j;
+  Vec3 branch;      // m, from i to j
+  double distance;  // m
+  double overlap;   // m
+};
+PairGeometry geometry(const GuardInput& in, std::size_t lane) {
+  PairGeometry g{in.pairs.first(lane), in.pairs.second(lane), {}, 0, 0};
+  g.branch = in.grains[g.j].position() - in.grains[g.i].position();
+  g.distance = g.branch.norm();
+  g.overlap = in.grains[g.i].radius() + in.grains[g.j].radius() - g.distance;
+  return g;
+}
+PairConstants<double> constants(const GuardInput& in, std::size_t lane) {
+  const std::size_t b = lane / PairContacts::width, k = lane % PairContacts::width;
+  PairConstants<double> c = in.materials.pair[in.pairs.head[b].material_pair];
+  c.effective_radius = in.pairs.block[b].effective_radius[k];
+  c.adhesion_length = in.pairs.block[b].adhesion_length[k];
+  return c;
+}
+
+// Looks at all contacts of the run: for the few grains that come near a limit.
 template <class F>
 void for_each_contact(const GuardInput& in, std::size_t i, F f) {
-  const Particles& p = in.particles;
-  const PairList& list = in.pairs.list;
   const bool friction =
       with_part<TangentialLaws>(in.setup.law.tangential, [](auto part) { return part.has_spring; });
   const auto tell = [&](const PairConstants<double>& c, double radius, const Vec3& normal, double elastic, double overlap,
@@ -38,24 +63,19 @@ void for_each_contact(const GuardInput& in, std::size_t i, F f) {
     f(Contact{normal, 2 * c.effective_modulus * radius, friction ? 8 * c.effective_shear * radius : 0, elastic, overlap,
               with()});
   };
-  const auto pair = [&](std::uint32_t s, std::uint32_t other) {
-    if (!in.pairs.acts[s]) return;
-    const Vec3 branch = p.position[other] - p.position[i];
-    const double distance = branch.norm();
-    tell(in.materials.pair[in.pairs.material_pair[s]], in.pairs.memory[s].contact_radius, branch / distance,
-         in.pairs.result[s].elastic, p.radius[i] + p.radius[other] - distance,
-         [&] { return "grain " + std::to_string(p.id[other]); });
-  };
-  for (std::uint32_t s = list.begin[i]; s < list.begin[i + 1]; ++s) pair(s, list.second[s]);
-  for (std::uint32_t k = list.incoming_begin[i]; k < list.incoming_begin[i + 1]; ++k)
-    pair(list.incoming[k], list.first[list.incoming[k]]);
-  for (std::uint32_t k = in.walls.of_particle_begin[i]; k < in.walls.of_particle_begin[i + 1]; ++k) {
-    const WallCandidate& c = in.walls.candidate[in.walls.of_particle[k]];
-    for (std::size_t q = 0; q < c.size; ++q)
-      if (c.contact[q].acts)
-        tell(c.constants, c.contact[q].memory.contact_radius, c.contact[q].touch.normal, c.contact[q].elastic,
-             p.radius[i] - c.contact[q].touch.distance, [&] { return "wall '" + in.setup.walls[c.wall].name + "'"; });
+  for (std::size_t lane = 0; lane < in.pairs.lanes(); ++lane) {
+    const std::uint32_t first = in.pairs.first(lane), second = in.pairs.second(lane);
+    if ((first != i && second != i) || !in.pairs.acts(lane)) continue;
+    const PairGeometry g = geometry(in, lane);
+    const PairConstants<double> c = constants(in, lane);
+    tell(c, in.pairs.contact_radius(lane), (first == i ? g.branch : -g.branch) / g.distance, elastic_force(in, c, g.overlap),
+         g.overlap, [&] { return "grain " + std::to_string(in.id[first == i ? second : first]); });
   }
+  for (const WallCandidate& c : in.walls.candidate)
+    for (std::size_t q = 0; q < c.size && c.particle == i; ++q)
+      if (c.contact[q].acts())
+        tell(c.constants, c.contact[q].memory.contact_radius, c.contact[q].touch.normal, c.contact[q].elastic,
+             in.grains[i].radius() - c.contact[q].touch.distance, [&] { return "wall '" + in.setup.walls[c.wall].name + "'"; });
 }
 
 // "its largest force, 12 N at an overlap of 1.5 um, is with wall 'blade'"
@@ -73,7 +93,7 @@ std::string largest_contact(const GuardInput& in, std::size_t i) {
 // Stiffness over mass and inertia, 1/s^2, of the grain's translation and (scaled) rotation between its contacts.
 Matrix6 dynamic_matrix(const GuardInput& in, std::size_t i) {
   Matrix6 sum = Matrix6::Zero();
-  const double m = 1 / std::sqrt(in.mass[i]), turn = in.particles.radius[i] / std::sqrt(in.inertia[i]);
+  const double m = 1 / std::sqrt(in.mass[i]), turn = in.grains[i].radius() / std::sqrt(in.inertia[i]);
   for_each_contact(in, i, [&](const Contact& c) {
     // Velocity of the contact point: v + omega x (R n), in scaled coordinates.
     Eigen::Matrix<double, 3, 6> motion;
@@ -97,13 +117,13 @@ std::string number(double value) {
 }
 
 void check_motion(const GuardInput& in) {
-  const Particles& p = in.particles;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.position[i].allFinite() || !p.velocity[i].allFinite() || !p.angular_velocity[i].allFinite())
+  for (std::size_t i = 0; i < in.id.size(); ++i) {
+    const GrainRow& grain = in.grains[i];
+    if (!grain.place.allFinite() || !grain.motion.allFinite() || !grain.spin.allFinite())
       throw PhysicsError("the motion of " + place(in, i) + " is no longer a number; " + largest_contact(in, i) +
                          "; likely cause: a time step above the stable limit");
-    if ((p.position[i].array() < in.setup.low.array()).any() || (p.position[i].array() > in.setup.high.array()).any())
-      throw PhysicsError(place(in, i) + " has left the domain with speed " + number(p.velocity[i].norm()) + " m/s; " +
+    if ((grain.position().array() < in.setup.low.array()).any() || (grain.position().array() > in.setup.high.array()).any())
+      throw PhysicsError(place(in, i) + " has left the domain with speed " + number(grain.velocity().norm()) + " m/s; " +
                          largest_contact(in, i) +
                          "; likely cause: a time step above the stable limit or a gap that pinched it through a wall");
   }
@@ -117,24 +137,22 @@ double largest_eigenvalue(const GuardInput& in, std::size_t i) {
 
 // 1/s^2, [N], traces of the dynamic matrices: upper bounds of their largest eigenvalues.
 std::vector<double> traces(const GuardInput& in) {
-  const Particles& p = in.particles;
   const bool friction =
       with_part<TangentialLaws>(in.setup.law.tangential, [](auto part) { return part.has_spring; });
-  std::vector<double> trace(p.size(), 0.0);
+  std::vector<double> trace(in.id.size(), 0.0);
   const auto add = [&](std::size_t i, const PairConstants<double>& c, double radius) {
-    const double tangential = friction ? 16 * c.effective_shear * radius : 0;
-    trace[i] += (2 * c.effective_modulus * radius + tangential) / in.mass[i] +
-                tangential * p.radius[i] * p.radius[i] / in.inertia[i];
+    const double tangential = friction ? 16 * c.effective_shear * radius : 0, lever = in.grains[i].radius();
+    trace[i] += (2 * c.effective_modulus * radius + tangential) / in.mass[i] + tangential * lever * lever / in.inertia[i];
   };
-  for (std::size_t s = 0; s < in.pairs.list.size(); ++s) {
-    if (!in.pairs.acts[s]) continue;
-    const PairConstants<double>& c = in.materials.pair[in.pairs.material_pair[s]];
-    add(in.pairs.list.first[s], c, in.pairs.memory[s].contact_radius);
-    add(in.pairs.list.second[s], c, in.pairs.memory[s].contact_radius);
+  for (std::size_t lane = 0; lane < in.pairs.lanes(); ++lane) {
+    if (!in.pairs.acts(lane)) continue;
+    const PairConstants<double>& c = in.materials.pair[in.pairs.head[lane / PairContacts::width].material_pair];
+    add(in.pairs.first(lane), c, in.pairs.contact_radius(lane));
+    add(in.pairs.second(lane), c, in.pairs.contact_radius(lane));
   }
   for (const WallCandidate& c : in.walls.candidate)
     for (std::size_t k = 0; k < c.size; ++k)
-      if (c.contact[k].acts) add(c.particle, c.constants, c.contact[k].memory.contact_radius);
+      if (c.contact[k].acts()) add(c.particle, c.constants, c.contact[k].memory.contact_radius);
   return trace;
 }
 
@@ -167,21 +185,21 @@ void check_stable_step(const GuardInput& in) {
 }
 
 void stop_for_overlap(const GuardInput& in) {
-  const Particles& p = in.particles;
   const auto text = [](double overlap, double force) {
     return "runaway overlap of " + number(overlap * 1e6) + " um at " + number(force) + " N between ";
   };
-  for (std::size_t s = 0; s < in.pairs.list.size(); ++s) {
-    const std::uint32_t i = in.pairs.list.first[s], j = in.pairs.list.second[s];
-    const double overlap = p.radius[i] + p.radius[j] - (p.position[i] - p.position[j]).norm();
-    if (in.pairs.acts[s] && !(overlap < runaway_overlap * std::min(p.radius[i], p.radius[j])))
-      throw PhysicsError(text(overlap, in.pairs.result[s].elastic) + "grain " + std::to_string(p.id[j]) + " and " +
-                         place(in, i) + "; likely cause: a time step above the stable limit");
+  for (std::size_t lane = 0; lane < in.pairs.lanes(); ++lane) {
+    if (!in.pairs.acts(lane)) continue;
+    const PairGeometry g = geometry(in, lane);
+    if (!(g.overlap < runaway_overlap * std::min(in.grains[g.i].radius(), in.grains[g.j].radius())))
+      throw PhysicsError(text(g.overlap, elastic_force(in, constants(in, lane), g.overlap)) + "grain " +
+                         std::to_string(in.id[g.j]) + " and " + place(in, g.i) +
+                         "; likely cause: a time step above the stable limit");
   }
   for (const WallCandidate& c : in.walls.candidate)
     for (std::size_t k = 0; k < c.size; ++k) {
-      const double overlap = p.radius[c.particle] - c.contact[k].touch.distance;
-      if (c.contact[k].acts && !(overlap < runaway_overlap * p.radius[c.particle]))
+      const double radius = in.grains[c.particle].radius(), overlap = radius - c.contact[k].touch.distance;
+      if (c.contact[k].acts() && !(overlap < runaway_overlap * radius))
         throw PhysicsError(text(overlap, c.contact[k].elastic) + "wall '" + in.setup.walls[c.wall].name + "' and " +
                            place(in, c.particle) +
                            "; likely cause: a time step above the stable limit, or a gap too narrow for the grain");

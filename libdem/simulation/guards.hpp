@@ -10,7 +10,9 @@ inline constexpr double runaway_overlap = 0.5;
 
 struct GuardInput {
   const Setup& setup;
-  const Particles& particles;
+  // In the order of the run's rows.
+  const std::vector<std::uint32_t>& id;
+  const std::vector<GrainRow>& grains;  // and phantoms behind them
   const std::vector<double>& mass;     // [N] kg
   const std::vector<double>& inertia;  // [N] kg m^2
   const MaterialTable& materials;
@@ -27,7 +29,7 @@ void check_motion(const GuardInput& in);
 // bound of the frequencies of the whole packing, so a step that this refuses is unstable (a step that it allows may still be).
 void check_stable_step(const GuardInput& in);
 
-// s, the limit for grain i, and the smallest of all grains; infinity without contacts.
+// s, the limit for the grain in row i, and the smallest of all grains; infinity without contacts.
 double stable_step(const GuardInput& in, std::size_t i);
 double stable_step(const GuardInput& in);
 

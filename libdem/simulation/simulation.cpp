@@ -1,20 +1,53 @@
 #include "libdem/simulation/simulation.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <tuple>
 
 #include "libdem/contact/forces.hpp"
+#include "libdem/contact/pair_blocks.hpp"
 #include "libdem/errors.hpp"
-#include "libdem/neighbors/pair_list.hpp"
+#include "libdem/neighbors/spatial_order.hpp"
 #include "libdem/simulation/guards.hpp"
 
 namespace dem {
 namespace {
 
-// Below this many grains waking other threads costs more than they save.
-constexpr std::size_t few_grains = 500;
+// Below this many chunks waking other threads costs more than they save.
+constexpr std::size_t few_chunks = 3;
+
+// The same contact seen from the other grain.
+State::Pair swapped(State::Pair c) {
+  std::swap(c.i, c.j);
+  c.spring = -c.spring;
+  c.rolling = -c.rolling;
+  return c;
+}
+LastForces swapped(LastForces last) {
+  last.normal = -last.normal;
+  std::swap(last.arm_i, last.arm_j);
+  last.tangential_elastic = -last.tangential_elastic;
+  last.tangential_viscous = -last.tangential_viscous;
+  std::swap(last.rolling_i, last.rolling_j);
+  return last;
+}
+
+// All memory of the contacts, by the grains' rows in State: pairs ascending in (i, j), wall pairs in (i, wall, feature).
+struct Memory {
+  std::vector<State::Pair> pairs;
+  std::vector<LastForces> last;  // of a run that keeps a ledger
+  std::vector<State::WallPair> wall_pairs;
+  std::vector<LastForces> wall_last;
+};
+
+// Where the pairs of each row begin; [N+1].
+template <class Pairs>
+std::vector<std::uint32_t> first_of_rows(const Pairs& pairs, std::size_t n) {
+  std::vector<std::uint32_t> begin(n + 1, 0);
+  for (const auto& c : pairs) ++begin[c.i + 1];
+  for (std::size_t i = 0; i < n; ++i) begin[i + 1] += begin[i];
+  return begin;
+}
 
 }  // namespace
 
@@ -22,16 +55,26 @@ struct Simulation::Engine {
   Setup setup;
   MaterialTable materials;
   std::uint64_t step = 0;
-  Particles p;
+  mutable Particles p;                 // in the caller's order; follows the rows where somebody looks
+  std::vector<double> all_mass, all_inertia;  // likewise
+
+  // In the order of rows.
+  std::vector<std::uint32_t> order;    // row in `p`
+  std::vector<std::uint32_t> row_of;   // the inverse: row here of a row in `p`
+  std::vector<GrainRow> grains;        // and phantoms
+  std::vector<ForceRow> forces;        // and phantoms
   std::vector<double> mass, inertia;
-  std::vector<Vec3> force, torque;
-  std::vector<double> compressive;
-  std::vector<Vec3> listed_position;  // where the grains were when the lists were built
+  std::vector<double> kick, turn;      // s/kg, s/(kg m^2): the step over them
+  std::vector<std::uint8_t> material;
+  std::vector<std::uint32_t> id;
+  std::vector<Vec4> listed;            // m, where the grains were when the lists were built; then 0
+
   std::vector<WallPose> poses;
   double mean_radius = 1, skin = 0;  // m
   std::uint64_t listed_step = 0;
-  double wall_travel = 0;  // m, upper bound of the walls' movement since the lists were built
   double wall_speed = 0;   // m/s, upper bound
+  double odometer = 0;     // m, upper bound of how far any two bodies have come nearer since the run began
+  double next_look = 0;    // m, on the odometer: when to look how much of the skin is left
   PairContacts pairs;
   WallContacts walls;
   std::vector<WallLoad> loads;  // [walls] of the last evaluation
@@ -48,13 +91,10 @@ struct Simulation::Engine {
     check_input();
     materials = make_material_table(setup.materials, setup.interactions, setup.law);
     const std::size_t n = p.size();
-    mass.resize(n);
-    inertia.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-      mass[i] = setup.materials[p.material[i]].density * sphere_volume(p.radius[i]);
-      inertia[i] = sphere_inertia(mass[i], p.radius[i]);
+      all_mass.push_back(setup.materials[p.material[i]].density * sphere_volume(p.radius[i]));
+      all_inertia.push_back(sphere_inertia(all_mass[i], p.radius[i]));
     }
-    compressive.assign(n, 0.0);
     rolling_spring = with_part<RollingLaws>(setup.law.rolling, [](auto part) { return part.has_spring; });
     wall_work.assign(setup.walls.size(), 0.0);
     last_power.assign(setup.walls.size(), 0.0);
@@ -62,30 +102,50 @@ struct Simulation::Engine {
     skin = 0.1 * mean_radius;
     for (const Wall& w : setup.walls) wall_speed = std::max(wall_speed, largest_speed(w));
     move_walls();
-    build_lists();
-    remember(state);
+
+    const bool goes_on = !state.force.empty();
+    const bool ledger_goes_on = setup.keep_ledger && goes_on;
+    if (ledger_goes_on && (state.ledger.pairs.size() != state.pairs.size() ||
+                           state.ledger.wall_pairs.size() != state.wall_pairs.size() ||
+                           state.ledger.wall_work.size() != setup.walls.size() ||
+                           state.ledger.last_power.size() != setup.walls.size()))
+      throw CaseError("the stored state has no energy ledger to go on with");
+    Memory memory{std::move(state.pairs), {}, std::move(state.wall_pairs), {}};
+    check(memory);
+    if (ledger_goes_on) {
+      memory.last = std::move(state.ledger.pairs);
+      memory.wall_last = std::move(state.ledger.wall_pairs);
+    } else if (setup.keep_ledger) {
+      memory.last.resize(memory.pairs.size());
+      memory.wall_last.resize(memory.wall_pairs.size());
+    }
+    if (goes_on && !state.layout.order.empty())
+      restore_lists(state.layout, memory);
+    else
+      build_lists(memory);
     begin_window();
-    if (state.force.empty()) {
-      force.assign(n, Vec3::Zero());
-      torque.assign(n, Vec3::Zero());
-      evaluate(0.0);
-      sum_and_move(false);
+    if (!goes_on) {
+      evaluate(0.0, true);
+      finish_forces(false);
       sum_wall_loads();
       begin_window();  // windows cover the steps after the start
       for (std::size_t w = 0; w < loads.size(); ++w) last_power[w] = power_into_grains(w);
       if (setup.keep_ledger) initial_energy = ledger().total();
-    } else {
-      force = std::move(state.force);
-      torque = std::move(state.torque);
-      sum_wall_loads();
-      if (setup.keep_ledger) {
-        spent = state.ledger.spent;
-        initial_energy = state.ledger.initial;
-        wall_work = state.ledger.wall_work;
-        last_power = state.ledger.last_power;
-      }
+      return;
+    }
+    if (state.force.size() != n || state.torque.size() != n)
+      throw CaseError("the stored state has forces on " + std::to_string(state.force.size()) + " grains, expected " + std::to_string(n));
+    for (std::size_t r = 0; r < n; ++r) forces[r] = {quad(state.force[order[r]], 0), quad(state.torque[order[r]], 0)};
+    sum_wall_loads();
+    if (setup.keep_ledger) {
+      spent = state.ledger.spent;
+      initial_energy = state.ledger.initial;
+      wall_work = state.ledger.wall_work;
+      last_power = state.ledger.last_power;
     }
   }
+
+  std::size_t size() const { return all_mass.size(); }
 
   void check_input() const {
     const std::size_t n = p.size(), m = setup.materials.size();
@@ -112,14 +172,34 @@ struct Simulation::Engine {
 
   double time() const { return double(step) * setup.step; }
 
+  // What indexes must be in range and in order before anything follows them.
+  void check(const Memory& memory) const {
+    const auto refuse = [](const std::string& what) { throw CaseError("the stored state has " + what); };
+    const std::size_t n = size();
+    for (std::size_t k = 0; k < memory.pairs.size(); ++k) {
+      const State::Pair& c = memory.pairs[k];
+      if (c.j >= n || c.i >= c.j) refuse("a contact between grains that it does not have");
+      if (k > 0 && std::tuple(memory.pairs[k - 1].i, memory.pairs[k - 1].j) >= std::tuple(c.i, c.j))
+        refuse("contacts that are not in ascending order of their grains");
+      if (!(c.contact_radius > 0)) refuse("a contact without a contact radius");
+    }
+    for (std::size_t k = 0; k < memory.wall_pairs.size(); ++k) {
+      const State::WallPair& c = memory.wall_pairs[k];
+      if (c.i >= n || c.wall >= setup.walls.size()) refuse("a contact with a wall that is not there");
+      if (k > 0 && memory.wall_pairs[k - 1].i > c.i) refuse("wall contacts that are not in ascending order of their grains");
+      if (!(c.contact_radius > 0)) refuse("a wall contact without a contact radius");
+    }
+  }
+
   void move_walls() {
     poses.resize(setup.walls.size());
     for (std::size_t w = 0; w < poses.size(); ++w) poses[w] = pose_at(setup.walls[w].motion, time());
   }
 
-  void evaluate(double dt) {
-    const double overlap =
-        evaluate_contacts(setup.law, setup.keep_ledger, {p, materials, setup.walls, poses, dt, step, setup.wall_curvature}, pairs, walls);
+  void evaluate(double dt, bool record) {
+    const double overlap = evaluate_contacts(setup.law, setup.keep_ledger,
+                                             {grains, materials, setup.walls, poses, dt, step, odometer, setup.wall_curvature, record},
+                                             pairs, walls, forces);
     window.largest_overlap = std::max(window.largest_overlap, overlap);
     if (setup.keep_ledger && dt > 0) {
       for (const PairContacts::Chunk& chunk : pairs.chunk) spent += chunk.ledger;
@@ -127,216 +207,304 @@ struct Simulation::Engine {
     }
   }
 
-  // Candidates around the present positions; memory of formed contacts is kept.
-  void build_lists() {
-    const std::size_t n = p.size();
-    PairContacts fresh;
-    fresh.list = build_pair_list(p.position, p.radius, skin);
-    const std::size_t count = fresh.list.size();
-    fresh.memory.resize(count);
-    fresh.result.resize(count);
-    fresh.acts.assign(count, 0);
-    fresh.bodies.resize(count);
-    fresh.material_pair.resize(count);
-    if (rolling_spring) fresh.rolling.assign(count, Vec3::Zero());
-    if (setup.keep_ledger) fresh.last.resize(count);
-    fresh.chunk.resize((n + PairContacts::chunk_rows - 1) / PairContacts::chunk_rows);
-    double reach = 0;
-#pragma omp parallel for schedule(static) reduction(max : reach)
-    for (std::size_t i = 0; i < n; ++i) {
-      std::size_t old = pairs.list.begin.empty() ? 0 : pairs.list.begin[i];
-      const std::size_t old_end = pairs.list.begin.empty() ? 0 : pairs.list.begin[i + 1];
-      for (std::size_t s = fresh.list.begin[i]; s < fresh.list.begin[i + 1]; ++s) {
-        const std::uint32_t j = fresh.list.second[s];
-        const std::size_t pair = p.material[i] * materials.size + p.material[j];
-        const PairConstants<double> c =
-            pair_constants(materials.pair[pair], {p.radius[i], mass[i], inertia[i]}, {p.radius[j], mass[j], inertia[j]});
-        fresh.bodies[s] = {c.effective_radius, c.effective_mass, c.effective_inertia, c.adhesion_length};
-        fresh.material_pair[s] = std::uint32_t(pair);
-        reach = std::max(reach, -with_part<NormalLaws>(setup.law.normal, [&](auto part) { return part.form_overlap(c); }));
-        while (old < old_end && pairs.list.second[old] < j) ++old;
-        if (old < old_end && pairs.list.second[old] == j) {
-          fresh.memory[s] = pairs.memory[old];
-          if (rolling_spring) fresh.rolling[s] = pairs.rolling[old];
-          if (setup.keep_ledger) fresh.last[s] = pairs.last[old];
-        }
-      }
+  // The caller's particles, as they are now.
+  void show_particles() const {
+    for (std::size_t r = 0; r < size(); ++r) {
+      p.position[order[r]] = grains[r].position();
+      p.velocity[order[r]] = grains[r].velocity();
+      p.angular_velocity[order[r]] = grains[r].angular_velocity();
     }
-    fresh.reach_beyond_touch = reach;
-    pairs = std::move(fresh);
-    build_wall_lists();
-    listed_position = p.position;
+  }
+
+  // Lays the caller's particles out in the given order.
+  void lay_out(std::vector<std::uint32_t> new_order) {
+    const std::size_t n = size();
+    order = std::move(new_order);
+    row_of.resize(n);
+    grains.assign(n + chunks_of(n), phantom());
+    forces.assign(n + chunks_of(n), ForceRow{});
+    mass.resize(n);
+    inertia.resize(n);
+    kick.resize(n);
+    turn.resize(n);
+    material.resize(n);
+    id.resize(n);
+    listed.resize(n);
+#pragma omp parallel for schedule(static)
+    for (std::size_t r = 0; r < n; ++r) {
+      const std::uint32_t i = order[r];
+      row_of[i] = std::uint32_t(r);
+      grains[r] = {quad(p.position[i], p.radius[i]), quad(p.velocity[i], 1 / p.radius[i]), quad(p.angular_velocity[i], 0)};
+      mass[r] = all_mass[i];
+      inertia[r] = all_inertia[i];
+      kick[r] = setup.step / mass[r];
+      turn[r] = setup.step / inertia[r];
+      material[r] = p.material[i];
+      id[r] = p.id[i];
+    }
+  }
+
+  // Lists of what may touch around the present positions, the grains laid out anew.
+  void build_lists(const Memory& memory) {
+    lay_out(spatial_order(p.position, 2 * mean_radius));
+    std::vector<Vec3> position(size());
+    std::vector<double> radius(size());
+    for (std::size_t r = 0; r < size(); ++r) {
+      position[r] = grains[r].position();
+      radius[r] = grains[r].radius();
+      listed[r] = quad(position[r], 0);
+    }
+    const std::vector<std::uint32_t> begin = first_of_rows(memory.pairs, size());
+    const auto touches = [&](std::uint32_t i, std::uint32_t j) { return find(memory, begin, order[i], order[j]) >= 0; };
     listed_step = step;
-    wall_travel = 0;
+    next_look = odometer + 0.5 * skin;
+    fill_lists(order_lanes(build_pair_list(position, radius, skin), grain_table(), materials.size, touches), memory, begin);
+  }
+
+  // The lists that a state was taken with.
+  void restore_lists(const State::Layout& layout, const Memory& memory) {
+    const std::size_t n = size(), lanes = layout.first.size();
+    std::vector<bool> seen(n, false);
+    bool sound = layout.order.size() == n && layout.listed.size() == n && layout.second.size() == lanes &&
+                 lanes % PairContacts::width == 0 && layout.skin > 0 && std::isfinite(layout.skin) &&
+                 std::isfinite(layout.odometer) && std::isfinite(layout.next_look);
+    for (std::size_t r = 0; sound && r < n; ++r) {
+      sound = layout.order[r] < n && !seen[layout.order[r]] && layout.listed[r].allFinite();
+      if (sound) seen[layout.order[r]] = true;
+    }
+    Lanes pairs_of_lanes(sound ? lanes : 0);
+    for (std::size_t k = 0; sound && k < lanes; ++k) pairs_of_lanes[k] = {layout.first[k], layout.second[k]};
+    if (sound) {
+      lay_out(layout.order);
+      sound = fit(pairs_of_lanes, grain_table());
+    }
+    if (!sound) throw CaseError("the stored state has a layout that does not fit its grains");
+    for (std::size_t r = 0; r < n; ++r) listed[r] = quad(layout.listed[r], 0);
+    skin = layout.skin;
+    listed_step = layout.listed_step;
+    odometer = layout.odometer;
+    next_look = layout.next_look;
+    fill_lists(pairs_of_lanes, memory, first_of_rows(memory.pairs, n));
+  }
+
+  GrainTable grain_table() const { return {grains, material, mass, inertia}; }
+
+  // The row in memory.pairs of a pair of the caller's rows, or -1.
+  static std::int64_t find(const Memory& memory, const std::vector<std::uint32_t>& begin, std::uint32_t i, std::uint32_t j) {
+    const auto [a, b] = std::minmax(i, j);
+    for (std::uint32_t k = begin[a]; k < begin[a + 1]; ++k)
+      if (memory.pairs[k].j == b) return k;
+    return -1;
+  }
+
+  void fill_lists(const Lanes& lanes, const Memory& memory, const std::vector<std::uint32_t>& begin) {
+    pairs = make_pair_contacts(lanes, grain_table(), materials, rolling_spring, setup.keep_ledger);
+    std::size_t remembered = 0;
+#pragma omp parallel for schedule(static) reduction(+ : remembered)
+    for (std::size_t b = 0; b < pairs.block.size(); ++b)
+      for (std::size_t k = 0; k < PairContacts::width; ++k) {
+        PairContacts::Block& block = pairs.block[b];
+        if (block.second[k] >= size()) continue;
+        const std::int64_t known = find(memory, begin, order[block.first[k]], order[block.second[k]]);
+        if (known < 0) continue;
+        const State::Pair& kept = memory.pairs[std::size_t(known)];
+        const bool turned = order[block.first[k]] != kept.i;
+        const State::Pair c = turned ? swapped(kept) : kept;
+        const std::size_t lane = PairContacts::width * b + k;
+        for (std::size_t x = 0; x < 3; ++x) block.spring[x][k] = c.spring[Eigen::Index(x)];
+        block.contact_radius[k] = c.contact_radius;
+        pairs.birth_step[lane] = c.birth_step;
+        if (rolling_spring)
+          for (std::size_t x = 0; x < 3; ++x) pairs.rolling[b].torque[x][k] = c.rolling[Eigen::Index(x)];
+        if (setup.keep_ledger) {
+          const LastForces& last = memory.last[std::size_t(known)];
+          pairs.last[lane] = turned ? swapped(last) : last;
+        }
+        pairs.head[b].acts = true;
+        ++remembered;
+      }
+    if (remembered != memory.pairs.size())
+      throw CaseError("the stored state has a contact between grains that are apart");
+    build_wall_lists(memory);
   }
 
   // Thin lists hold little more than the contacts, thick ones are built less often. The aim is a list that lasts a few hundred
   // steps; forces do not depend on it.
   void adapt_skin() {
     const std::uint64_t lasted = step - listed_step;
-    if (lasted < 100) skin = std::min(1.5 * skin, mean_radius);
-    if (lasted > 1000) skin = std::max(0.8 * skin, 0.05 * mean_radius);
+    if (lasted < 200) skin = std::min(1.5 * skin, mean_radius);
+    if (lasted > 2000) skin = std::max(0.8 * skin, 0.05 * mean_radius);
   }
 
-  void build_wall_lists() {
-    const std::size_t n = p.size();
-    std::map<std::pair<std::uint32_t, std::uint32_t>, const WallCandidate*> old;
-    for (const WallCandidate& c : walls.candidate)
-      if (c.size > 0) old[{c.wall, c.particle}] = &c;
+  void build_wall_lists(const Memory& memory) {
+    const std::size_t n = size(), chunks = chunks_of(n);
     WallContacts fresh;
-    for (std::uint32_t w = 0; w < setup.walls.size(); ++w) {
-      const std::uint32_t first = std::uint32_t(fresh.candidate.size());
-      for (std::uint32_t i = 0; i < n; ++i) {
-        const double reach = p.radius[i] + skin;
-        if (!near(setup.walls[w], poses[w], p.position[i], reach)) continue;
-        WallCandidate c{};
-        c.particle = i;
-        c.wall = w;
-        c.part_begin = std::uint32_t(fresh.parts.size());
-        candidate_parts(setup.walls[w], poses[w], p.position[i], reach, fresh.parts);
-        c.part_end = std::uint32_t(fresh.parts.size());
-        if (std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
-        c.constants = wall_constants(materials(p.material[i], setup.walls[w].material),
-                                     {p.radius[i], mass[i], inertia[i]});
-        if (const auto known = old.find({w, i}); known != old.end()) {
-          c.size = known->second->size;
-          c.contact = known->second->contact;
+    fresh.skin = skin;
+    fresh.chunk_begin.assign(1, 0);
+    const std::vector<std::uint32_t> begin = first_of_rows(memory.wall_pairs, n);
+    std::size_t remembered = 0;
+    for (std::size_t number = 0; number < chunks; ++number) {
+      for (std::uint32_t w = 0; w < setup.walls.size(); ++w) {
+        const std::uint32_t first = std::uint32_t(fresh.candidate.size());
+        for (std::size_t r = number * chunk_rows; r < std::min((number + 1) * chunk_rows, n); ++r) {
+          const std::uint32_t i = order[r];
+          WallCandidate c{};
+          for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
+            const State::WallPair& kept = memory.wall_pairs[k];
+            if (kept.wall != w) continue;
+            if (c.size == WallCandidate::capacity) throw CaseError("the stored state has a contact with a wall that is not there");
+            WallContact& contact = c.contact[c.size++];
+            contact = WallContact{};
+            contact.touch.feature = kept.feature;
+            contact.touch.normal = kept.normal;
+            contact.touch.distance = kept.distance;
+            contact.touch.curvature = kept.curvature;
+            contact.memory = {kept.spring, kept.contact_radius, kept.birth_step};
+            contact.rolling = kept.rolling;
+            if (setup.keep_ledger) contact.last = memory.wall_last[k];
+            ++remembered;
+          }
+          const double reach = grains[r].radius() + skin;
+          if (c.size == 0 && !near(setup.walls[w], poses[w], grains[r].position(), reach)) continue;
+          c.particle = std::uint32_t(r);
+          c.wall = w;
+          c.part_begin = std::uint32_t(fresh.parts.size());
+          candidate_parts(setup.walls[w], poses[w], grains[r].position(), reach, fresh.parts);
+          c.part_end = std::uint32_t(fresh.parts.size());
+          if (c.size == 0 && std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
+          c.constants = wall_constants(materials(material[r], setup.walls[w].material), {grains[r].radius(), mass[r], inertia[r]});
+          fresh.candidate.push_back(c);
         }
-        fresh.candidate.push_back(c);
+        if (first == fresh.candidate.size()) continue;
+        fresh.chunk.emplace_back();
+        fresh.chunk.back().wall = w;
+        fresh.chunk.back().begin = first;
+        fresh.chunk.back().end = std::uint32_t(fresh.candidate.size());
       }
-      const std::uint32_t last = std::uint32_t(fresh.candidate.size());
-      const auto block = [&](std::uint32_t q) { return fresh.candidate[q].particle / WallContacts::chunk_rows; };
-      for (std::uint32_t q = first; q < last; ++q) {
-        if (q == first || block(q) != block(q - 1)) {
-          fresh.chunk.emplace_back();
-          fresh.chunk.back().wall = w;
-          fresh.chunk.back().begin = q;
-        }
-        fresh.chunk.back().end = q + 1;
-      }
+      fresh.chunk_begin.push_back(std::uint32_t(fresh.chunk.size()));
     }
-    fresh.acts.assign(fresh.candidate.size(), 0);
-    fresh.of_particle_begin.assign(n + 1, 0);
-    for (const WallCandidate& c : fresh.candidate) ++fresh.of_particle_begin[c.particle + 1];
-    for (std::size_t i = 0; i < n; ++i) fresh.of_particle_begin[i + 1] += fresh.of_particle_begin[i];
-    fresh.of_particle.resize(fresh.candidate.size());
-    std::vector<std::uint32_t> next(fresh.of_particle_begin.begin(), fresh.of_particle_begin.end() - 1);
-    for (std::uint32_t c = 0; c < fresh.candidate.size(); ++c) fresh.of_particle[next[fresh.candidate[c].particle]++] = c;
+    if (remembered != memory.wall_pairs.size())
+      throw CaseError("the stored state has a contact with a wall that is not there");
     walls = std::move(fresh);
   }
 
-  // Puts the memory of a stored state into the fresh lists.
-  void remember(const State& state) {
-    const std::size_t n = p.size();
-    const bool goes_on = setup.keep_ledger && !state.force.empty();
-    if (goes_on && (state.ledger.pairs.size() != state.pairs.size() ||
-                    state.ledger.wall_pairs.size() != state.wall_pairs.size() ||
-                    state.ledger.wall_work.size() != setup.walls.size() || state.ledger.last_power.size() != setup.walls.size()))
-      throw CaseError("the stored state has no energy ledger to go on with");
-    for (std::size_t k = 0; k < state.pairs.size(); ++k) {
-      const State::Pair& stored = state.pairs[k];
-      if (stored.i >= n || stored.j >= n || stored.i >= stored.j)
-        throw CaseError("the stored state has a contact between grains that it does not have");
-      const auto begin = pairs.list.second.begin() + pairs.list.begin[stored.i];
-      const auto end = pairs.list.second.begin() + pairs.list.begin[stored.i + 1];
-      const auto found = std::lower_bound(begin, end, stored.j);
-      if (found == end || *found != stored.j)
-        throw CaseError("the stored state has a contact between grains that are apart");
-      const std::size_t slot = std::size_t(found - pairs.list.second.begin());
-      pairs.memory[slot] = {stored.spring, stored.contact_radius, stored.birth_step, true};
-      if (rolling_spring) pairs.rolling[slot] = stored.rolling;
-      if (goes_on) pairs.last[slot] = state.ledger.pairs[k];
+  Memory memory() const {
+    Memory all;
+    const bool ledger = setup.keep_ledger;
+    std::vector<std::uint32_t> begin(size() + 1, 0);
+    const auto first = [&](std::size_t lane) { return std::min(order[pairs.first(lane)], order[pairs.second(lane)]); };
+    for (std::size_t lane = 0; lane < pairs.lanes(); ++lane)
+      if (pairs.acts(lane)) ++begin[first(lane) + 1];
+    for (std::size_t i = 0; i < size(); ++i) begin[i + 1] += begin[i];
+    std::vector<std::uint32_t> at(begin.begin(), begin.end() - 1), lane_of(begin.back());
+    for (std::size_t lane = 0; lane < pairs.lanes(); ++lane)
+      if (pairs.acts(lane)) lane_of[at[first(lane)]++] = std::uint32_t(lane);
+    const auto other = [&](std::uint32_t lane) { return std::max(order[pairs.first(lane)], order[pairs.second(lane)]); };
+    all.pairs.resize(lane_of.size());
+    if (ledger) all.last.resize(lane_of.size());
+#pragma omp parallel for schedule(static)
+    for (std::size_t i = 0; i < size(); ++i) {
+      std::sort(lane_of.begin() + begin[i], lane_of.begin() + begin[i + 1],
+                [&](std::uint32_t a, std::uint32_t b) { return other(a) < other(b); });
+      for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
+        const std::uint32_t lane = lane_of[k];
+        const PairContacts::Block& block = pairs.block[lane / PairContacts::width];
+        const std::size_t x = lane % PairContacts::width;
+        State::Pair c{order[block.first[x]], order[block.second[x]], {block.spring[0][x], block.spring[1][x], block.spring[2][x]},
+                      pairs.birth_step[lane], block.contact_radius[x]};
+        if (rolling_spring) {
+          const auto& rolling = pairs.rolling[lane / PairContacts::width].torque;
+          c.rolling = {rolling[0][x], rolling[1][x], rolling[2][x]};
+        }
+        const bool turned = c.i > c.j;
+        all.pairs[k] = turned ? swapped(c) : c;
+        if (ledger) all.last[k] = turned ? swapped(pairs.last[lane]) : pairs.last[lane];
+      }
     }
-    for (std::size_t k = 0; k < state.wall_pairs.size(); ++k) {
-      const State::WallPair& stored = state.wall_pairs[k];
-      WallCandidate* candidate = nullptr;
-      if (stored.i < n)
-        for (std::uint32_t q = walls.of_particle_begin[stored.i]; q < walls.of_particle_begin[stored.i + 1]; ++q)
-          if (walls.candidate[walls.of_particle[q]].wall == stored.wall) candidate = &walls.candidate[walls.of_particle[q]];
-      if (!candidate || candidate->size == WallCandidate::capacity)
-        throw CaseError("the stored state has a contact with a wall that is not there");
-      WallContact& contact = candidate->contact[candidate->size++];
-      contact = WallContact{};
-      contact.touch.feature = stored.feature;
-      contact.touch.normal = stored.normal;
-      contact.touch.distance = stored.distance;
-      contact.touch.curvature = stored.curvature;
-      contact.memory = {stored.spring, stored.contact_radius, stored.birth_step, true};
-      contact.rolling = stored.rolling;
-      if (goes_on) contact.last = state.ledger.wall_pairs[k];
-    }
+    for_each_wall_contact([&](const WallCandidate& c, const WallContact& w) {
+      all.wall_pairs.push_back({order[c.particle], c.wall, w.touch.feature, w.touch.normal, w.memory.spring, w.memory.birth_step,
+                                w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature});
+      if (ledger) all.wall_last.push_back(w.last);
+    });
+    return all;
   }
 
-  // Sums the forces on every grain in a fixed order (own pairs, incoming pairs, walls) and, if asked to, moves it.
-  // Returns the square of the largest movement since the lists were built.
-  double sum_and_move(bool move) {
-    const std::size_t n = p.size();
-    double travel2 = 0, largest_compressive = 0;
+  // Formed contacts by the caller's rows, then wall, then feature.
+  template <class F>
+  void for_each_wall_contact(F f) const {
+    std::vector<std::uint32_t> sorted(walls.candidate.size());
+    std::iota(sorted.begin(), sorted.end(), 0u);
+    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const WallCandidate &x = walls.candidate[a], &y = walls.candidate[b];
+      return std::tuple(order[x.particle], x.wall) < std::tuple(order[y.particle], y.wall);
+    });
+    for (const std::uint32_t q : sorted)
+      for (std::size_t k = 0; k < walls.candidate[q].size; ++k)
+        if (walls.candidate[q].contact[k].acts()) f(walls.candidate[q], walls.candidate[q].contact[k]);
+  }
+
+  // Completes the sums of forces on every grain and, if asked to, moves it. Returns the largest component of any velocity.
+  double finish_forces(bool move) {
+    double speed = 0, largest_compressive = 0;
     std::uint32_t watched = 0;
-#pragma omp parallel for schedule(static) reduction(max : travel2, largest_compressive) reduction(+ : watched) if (n > few_grains)
-    for (std::size_t i = 0; i < n; ++i) {
-      Vec3 f = mass[i] * setup.gravity, t = Vec3::Zero();
-      double pressed = 0;
-      for (std::uint32_t s = pairs.list.begin[i]; s < pairs.list.begin[i + 1]; ++s) {
-        if (!pairs.acts[s]) continue;
-        const PairForce& r = pairs.result[s];
-        f += r.force;
-        t += r.torque_i;
-        pressed += std::max(r.elastic + r.damping, 0.0);
+    const std::size_t chunks = pairs.chunk.size(), n = size();
+    const Vec4 gravity = quad(setup.gravity, 0);
+#pragma omp parallel for schedule(static) reduction(max : speed, largest_compressive) reduction(+ : watched) if (chunks >= few_chunks)
+    for (std::size_t c = 0; c < chunks; ++c) {
+      add_crossing(pairs, c, forces);
+      Vec4 fastest = Vec4::Zero();
+      for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, n); ++i) {
+        forces[i].force += mass[i] * gravity;
+        const double pressed = forces[i].force[3];
+        largest_compressive = std::max(largest_compressive, pressed);
+        watched += pressed > setup.watch_force ? 1 : 0;
+        if (move) fastest = fastest.cwiseMax(kick_and_drift(i).cwiseAbs());
       }
-      for (std::uint32_t k = pairs.list.incoming_begin[i]; k < pairs.list.incoming_begin[i + 1]; ++k) {
-        if (!pairs.acts[pairs.list.incoming[k]]) continue;
-        const PairForce& r = pairs.result[pairs.list.incoming[k]];
-        f -= r.force;
-        t += r.torque_j;
-        pressed += std::max(r.elastic + r.damping, 0.0);
-      }
-      for (std::uint32_t k = walls.of_particle_begin[i]; k < walls.of_particle_begin[i + 1]; ++k) {
-        if (!walls.acts[walls.of_particle[k]]) continue;
-        const WallCandidate& candidate = walls.candidate[walls.of_particle[k]];
-        for (std::size_t c = 0; c < candidate.size; ++c) {
-          const WallContact& r = candidate.contact[c];
-          if (!r.acts) continue;
-          f += r.force;
-          t += r.torque;
-          pressed += std::max(r.elastic + r.damping, 0.0);
-        }
-      }
-      force[i] = f;
-      torque[i] = t;
-      compressive[i] = pressed;
-      largest_compressive = std::max(largest_compressive, pressed);
-      watched += pressed > setup.watch_force ? 1 : 0;
-      if (move) travel2 = std::max(travel2, kick_and_drift(i));
+      speed = std::max(speed, fastest.maxCoeff());
     }
     window.largest_compressive_force = std::max(window.largest_compressive_force, largest_compressive);
     window.most_watched = std::max(window.most_watched, watched);
-    return travel2;
+    return speed;
   }
 
   // The change of a velocity in one step under local damping; the velocity in the middle of the step says which way it goes.
-  Vec3 damped(const Vec3& velocity, const Vec3& change) const {
-    const double speeding_up = change.dot(velocity + 0.5 * change);
+  Vec4 damped(const Vec4& velocity, const Vec4& change) const {
+    const double speeding_up = change.head<3>().dot((velocity + 0.5 * change).head<3>());
     const double share = speeding_up > 0 ? 1 - setup.local_damping : 1 + setup.local_damping;
     return share * change;
   }
 
-  double kick_and_drift(std::size_t i) {
-    const double dt = setup.step;
-    const Vec3 kick = (dt / mass[i]) * force[i], turn = (dt / inertia[i]) * torque[i];
-    const bool plain = setup.local_damping == 0;
-    p.velocity[i] += plain ? kick : damped(p.velocity[i], kick);
-    p.angular_velocity[i] += plain ? turn : damped(p.angular_velocity[i], turn);
-    p.position[i] += dt * p.velocity[i];
-    return (p.position[i] - listed_position[i]).squaredNorm();
+  // Returns the new velocity.
+  Vec4 kick_and_drift(std::size_t i) {
+    const Vec4 three(1, 1, 1, 0);
+    Vec4 faster = (kick[i] * three).cwiseProduct(forces[i].force), spun = turn[i] * forces[i].torque;
+    GrainRow& grain = grains[i];
+    if (setup.local_damping != 0) {
+      faster = damped(grain.motion, faster);
+      spun = damped(grain.spin, spun);
+    }
+    grain.motion += faster;
+    grain.spin += spun;
+    const Vec4 velocity = three.cwiseProduct(grain.motion);
+    grain.place += setup.step * velocity;
+    return velocity;
   }
 
+  // Likewise for all of them.
   double move_all() {
+    double speed = 0;
+#pragma omp parallel for schedule(static) reduction(max : speed) if (pairs.chunk.size() >= few_chunks)
+    for (std::size_t i = 0; i < size(); ++i) speed = std::max(speed, kick_and_drift(i).cwiseAbs().maxCoeff());
+    return speed;
+  }
+
+  // m, of the skin of the lists: what two bodies may still come nearer until the lists must be built again.
+  double skin_left() const {
     double travel2 = 0;
-#pragma omp parallel for schedule(static) reduction(max : travel2) if (p.size() > few_grains)
-    for (std::size_t i = 0; i < p.size(); ++i)
-      travel2 = std::max(travel2, kick_and_drift(i));
-    return travel2;
+#pragma omp parallel for schedule(static) reduction(max : travel2) if (pairs.chunk.size() >= few_chunks)
+    for (std::size_t i = 0; i < size(); ++i) travel2 = std::max(travel2, (grains[i].place - listed[i]).head<3>().squaredNorm());
+    const double travel = std::sqrt(travel2), wall_travel = wall_speed * setup.step * double(step - listed_step);
+    return skin - travel - std::max(travel, wall_travel);
   }
 
   void begin_window() {
@@ -380,27 +548,38 @@ struct Simulation::Engine {
 
   void advance(std::uint64_t steps) {
     if (steps == 0) return;
-    double travel2 = move_all();
+    double speed = move_all();
     for (std::uint64_t k = 1; k <= steps; ++k) {
       ++step;
       move_walls();
-      wall_travel += wall_speed * setup.step;
-      const double travel = std::sqrt(travel2);
-      // Two grains may have come 2 * travel closer, a grain and a wall travel + wall_travel.
-      if (!(2 * travel < skin && travel + wall_travel < skin)) {
-        guard();
-        adapt_skin();
-        build_lists();
+      const double root_three = 1.7320508075688774;
+      speed *= root_three;
+      odometer += (speed + std::max(speed, wall_speed)) * setup.step;
+      if (!(odometer < next_look)) {
+        const double left = skin_left();
+        next_look = odometer + 0.999 * left;
+        if (!(left > 0.01 * skin)) {
+          guard();
+          adapt_skin();
+          show_particles();
+          build_lists(memory());
+        }
       }
-      evaluate(setup.step);
-      if (!(window.largest_overlap < runaway_overlap)) stop_for_overlap(guarded());
-      travel2 = sum_and_move(k < steps);
+      evaluate(setup.step, k == steps);
+      if (!(window.largest_overlap < runaway_overlap)) stop();
+      speed = finish_forces(k < steps);
       record_walls();
     }
+    show_particles();
     guard();
   }
 
-  GuardInput guarded() const { return {setup, p, mass, inertia, materials, pairs, walls, time()}; }
+  [[noreturn]] void stop() {
+    evaluate(0.0, true);  // so that the last frame shows the forces
+    stop_for_overlap(guarded());
+  }
+
+  GuardInput guarded() const { return {setup, id, grains, mass, inertia, materials, pairs, walls, time()}; }
   void guard() const {
     check_motion(guarded());
     check_stable_step(guarded());
@@ -408,18 +587,19 @@ struct Simulation::Engine {
 
   double kinetic_energy() const {
     double energy = 0;
-    for (std::size_t i = 0; i < p.size(); ++i)
-      energy += 0.5 * mass[i] * p.velocity[i].squaredNorm() + 0.5 * inertia[i] * p.angular_velocity[i].squaredNorm();
+    for (std::size_t i = 0; i < size(); ++i)
+      energy += 0.5 * mass[i] * grains[i].velocity().squaredNorm() + 0.5 * inertia[i] * grains[i].angular_velocity().squaredNorm();
     return energy;
   }
 
   Ledger ledger() const {
     Ledger sum;
     if (!setup.keep_ledger) return sum;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      sum.kinetic += 0.5 * p.velocity[i].dot(mass[i] * p.velocity[i] + setup.step * force[i]);
-      sum.rotational += 0.5 * p.angular_velocity[i].dot(inertia[i] * p.angular_velocity[i] + setup.step * torque[i]);
-      sum.gravitational -= mass[i] * setup.gravity.dot(p.position[i]);
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Vec3 v = grains[i].velocity(), w = grains[i].angular_velocity();
+      sum.kinetic += 0.5 * v.dot(mass[i] * v + setup.step * forces[i].force.head<3>());
+      sum.rotational += 0.5 * w.dot(inertia[i] * w + setup.step * forces[i].torque.head<3>());
+      sum.gravitational -= mass[i] * setup.gravity.dot(grains[i].position());
     }
     for (const LastForces& last : pairs.last) sum.stored += last.energy();
     for (const WallCandidate& c : walls.candidate)
@@ -447,8 +627,10 @@ double Simulation::stable_step() const { return dem::stable_step(engine_->guarde
 
 std::size_t Simulation::contacts() const {
   std::size_t count = 0;
-  for (std::uint8_t a : engine_->pairs.acts) count += a;
-  for (std::uint8_t a : engine_->walls.acts) count += a;
+  for (const PairContacts::Block& block : engine_->pairs.block)
+    for (const double radius : block.contact_radius) count += radius > 0;
+  for (const WallCandidate& c : engine_->walls.candidate)
+    for (std::size_t k = 0; k < c.size; ++k) count += c.contact[k].acts();
   return count;
 }
 
@@ -456,41 +638,38 @@ State Simulation::state() const {
   const Engine& e = *engine_;
   State state;
   state.step = e.step;
+  e.show_particles();
   state.particles = e.p;
-  state.force = e.force;
-  state.torque = e.torque;
-  const bool ledger = e.setup.keep_ledger;
-  for (std::size_t s = 0; s < e.pairs.list.size(); ++s) {
-    const ContactMemory& m = e.pairs.memory[s];
-    if (!m.touched) continue;
-    state.pairs.push_back({e.pairs.list.first[s], e.pairs.list.second[s], m.spring, m.birth_step, m.contact_radius,
-                           e.rolling_spring ? e.pairs.rolling[s] : Vec3(Vec3::Zero())});
-    if (ledger) state.ledger.pairs.push_back(e.pairs.last[s]);
+  state.force.resize(e.size());
+  state.torque.resize(e.size());
+  for (std::size_t r = 0; r < e.size(); ++r) {
+    state.force[e.order[r]] = e.forces[r].force.head<3>();
+    state.torque[e.order[r]] = e.forces[r].torque.head<3>();
+    state.layout.listed.push_back(e.listed[r].head<3>());
   }
-  for (std::uint32_t i = 0; i < e.p.size(); ++i)
-    for (std::uint32_t k = e.walls.of_particle_begin[i]; k < e.walls.of_particle_begin[i + 1]; ++k) {
-      const WallCandidate& c = e.walls.candidate[e.walls.of_particle[k]];
-      for (std::size_t q = 0; q < c.size; ++q) {
-        const WallContact& w = c.contact[q];
-        if (!w.memory.touched) continue;
-        state.wall_pairs.push_back({i, c.wall, w.touch.feature, w.touch.normal, w.memory.spring, w.memory.birth_step,
-                                    w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature});
-        if (ledger) state.ledger.wall_pairs.push_back(w.last);
-      }
-    }
-  if (ledger) {
-    state.ledger.spent = e.spent;
-    state.ledger.initial = e.initial_energy;
-    state.ledger.wall_work = e.wall_work;
-    state.ledger.last_power = e.last_power;
+  state.layout.order = e.order;
+  for (std::size_t lane = 0; lane < e.pairs.lanes(); ++lane) {
+    state.layout.first.push_back(e.pairs.first(lane));
+    state.layout.second.push_back(e.pairs.second(lane));
+  }
+  state.layout.listed_step = e.listed_step;
+  state.layout.skin = e.skin;
+  state.layout.odometer = e.odometer;
+  state.layout.next_look = e.next_look;
+  Memory memory = e.memory();
+  state.pairs = std::move(memory.pairs);
+  state.wall_pairs = std::move(memory.wall_pairs);
+  if (e.setup.keep_ledger) {
+    state.ledger = {e.spent, e.initial_energy, e.wall_work, e.last_power, std::move(memory.last), std::move(memory.wall_last)};
   }
   return state;
 }
 
 View Simulation::view() const {
   const Engine& e = *engine_;
-  const std::size_t n = e.p.size();
+  const std::size_t n = e.size();
   const double half = 0.5 * e.setup.step;
+  e.show_particles();
   View view;
   view.step = e.step;
   view.time = e.time();
@@ -498,33 +677,32 @@ View Simulation::view() const {
   view.material = e.p.material;
   view.radius = e.p.radius;
   view.position = e.p.position;
-  view.compressive_force = e.compressive;
+  view.compressive_force.resize(n);
   view.velocity.resize(n);
   view.angular_velocity.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    view.velocity[i] = e.p.velocity[i] + half / e.mass[i] * e.force[i];
-    view.angular_velocity[i] = e.p.angular_velocity[i] + half / e.inertia[i] * e.torque[i];
+  for (std::size_t r = 0; r < n; ++r) {
+    const std::uint32_t i = e.order[r];
+    view.compressive_force[i] = e.forces[r].force[3];
+    view.velocity[i] = e.p.velocity[i] + half / e.mass[r] * e.forces[r].force.head<3>();
+    view.angular_velocity[i] = e.p.angular_velocity[i] + half / e.inertia[r] * e.forces[r].torque.head<3>();
   }
-  for (std::size_t s = 0; s < e.pairs.list.size(); ++s) {
-    if (!e.pairs.acts[s]) continue;
-    const PairForce& r = e.pairs.result[s];
-    const std::uint32_t i = e.pairs.list.first[s], j = e.pairs.list.second[s];
-    const Vec3 branch = e.p.position[j] - e.p.position[i];
-    const double distance = branch.norm();
+  for (std::size_t lane = 0; lane < e.pairs.lanes(); ++lane) {
+    if (!e.pairs.acts(lane)) continue;
+    const PairForce& r = e.pairs.result[lane];
+    const std::uint32_t first = e.order[e.pairs.first(lane)], second = e.order[e.pairs.second(lane)];
+    const double distance = (e.p.position[second] - e.p.position[first]).norm();
+    const auto [i, j] = std::minmax(first, second);
     view.pairs.push_back({i, j, e.p.radius[i] + e.p.radius[j] - distance, r.elastic, r.damping,
-                          r.force + branch * ((r.elastic + r.damping) / distance), e.pairs.memory[s].birth_step, r.sliding});
+                          first < second ? r.tangential : Vec3(-r.tangential), e.pairs.birth_step[lane], r.sliding});
   }
-  for (std::uint32_t i = 0; i < n; ++i)
-    for (std::uint32_t k = e.walls.of_particle_begin[i]; k < e.walls.of_particle_begin[i + 1]; ++k) {
-      const WallCandidate& c = e.walls.candidate[e.walls.of_particle[k]];
-      for (std::size_t q = 0; q < c.size; ++q) {
-        const WallContact& r = c.contact[q];
-        if (!r.acts) continue;
-        view.wall_pairs.push_back({i, c.wall, r.touch.facet, r.touch.kind, r.touch.point, r.touch.normal,
-                                   e.p.radius[i] - r.touch.distance, r.elastic, r.damping, r.tangential,
-                                   r.memory.birth_step, r.sliding});
-      }
-    }
+  std::sort(view.pairs.begin(), view.pairs.end(),
+            [](const PairRecord& a, const PairRecord& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); });
+  e.for_each_wall_contact([&](const WallCandidate& c, const WallContact& r) {
+    const std::uint32_t i = e.order[c.particle];
+    view.wall_pairs.push_back({i, c.wall, r.touch.facet, r.touch.kind, r.touch.point, r.touch.normal,
+                               e.p.radius[i] - r.touch.distance, r.elastic, r.damping, r.tangential, r.memory.birth_step,
+                               r.sliding});
+  });
   for (std::size_t w = 0; w < e.poses.size(); ++w) view.walls.push_back({e.poses[w], e.loads[w].force, e.loads[w].torque, {}});
   for (const WallContacts::Chunk& chunk : e.walls.chunk)
     for (std::size_t l = 0; l < facet_labels; ++l) view.walls[chunk.wall].load_of_label[l] += chunk.load_of_label[l];

@@ -66,9 +66,19 @@ struct State {
     std::vector<double> wall_work, last_power;  // [walls] J; W of the last evaluation
     std::vector<LastForces> pairs, wall_pairs;  // of the contacts below
   };
+  // How the run keeps its grains and pairs: sums go in this order. Only read together with `force`.
+  struct Layout {
+    std::vector<std::uint32_t> order;          // [N] row of `particles` for each row of the run
+    std::vector<Vec3> listed;                  // [N] m, where the grains were when the lists were built; rows of the run
+    std::vector<std::uint32_t> first, second;  // [lanes] rows of the run (PairContacts)
+    std::uint64_t listed_step = 0;
+    double skin = 0;                           // m, of the lists
+    double odometer = 0, next_look = 0;        // m
+  };
   std::uint64_t step = 0;
   Particles particles;
   std::vector<Vec3> force, torque;  // [N] of the last evaluation; empty for a fresh start
+  Layout layout;
   std::vector<Pair> pairs;
   std::vector<WallPair> wall_pairs;
   Ledger ledger;

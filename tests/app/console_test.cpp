@@ -15,7 +15,7 @@ namespace {
 Progress sample() {
   Progress p;
   p.stage = "simulate";
-  p.unit = "s";
+  p.unit = std::string("s");  // not a plain literal: GCC bug 105651
   p.done = 0.0124;
   p.total = 2;
   p.step = 248000;

@@ -37,13 +37,8 @@ TEST(PairList, FindsTheSamePairsAsBruteForceInAThousandScenes) {
         if ((s.position[i] - s.position[j]).norm() < s.radius[i] + s.radius[j] + skin) expected.emplace_back(i, j);
     for (std::size_t k = 0; k < list.size(); ++k) found.emplace_back(list.first[k], list.second[k]);
     ASSERT_EQ(found, expected) << "seed " << seed;
-    // Rows and the view from the other side hold the same pairs.
-    for (std::uint32_t i = 0; i < s.radius.size(); ++i) {
+    for (std::uint32_t i = 0; i < s.radius.size(); ++i)
       for (std::uint32_t k = list.begin[i]; k < list.begin[i + 1]; ++k) ASSERT_EQ(list.first[k], i);
-      for (std::uint32_t k = list.incoming_begin[i]; k < list.incoming_begin[i + 1]; ++k)
-        ASSERT_EQ(list.second[list.incoming[k]], i);
-    }
-    ASSERT_EQ(list.incoming.size(), list.size());
   }
 }
 

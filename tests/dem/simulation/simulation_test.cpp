@@ -5,9 +5,10 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "libdem/errors.hpp"
-#include "libdem/particles/particles.hpp"
+#include "libdem/particles/grain_rows.hpp"
 #include "tests/dem/grains.hpp"
 
 namespace dem {
@@ -73,16 +74,70 @@ TEST(Simulation, GivesTheSameBytesForAnyNumberOfThreads) {
   expect_same_bytes(ends[0], ends[2]);
 }
 
-TEST(Simulation, ContinuesFromAStateExactly) {
+// Grains in several chunks that stir long enough for the lists to be built anew between the stops, and right after them.
+TEST(Simulation, ContinuesFromAnyStateExactly) {
   omp_set_num_threads(1);
-  const Particles grains = support::packed_cube(6, 1e-7, 0.1, 3);
-  Simulation whole(boxed(2.8e-3), fresh(grains)), first(boxed(2.8e-3), fresh(grains));
-  first.advance(1717);
-  Simulation second(boxed(2.8e-3), first.state());
-  second.advance(3283);
+  const Particles grains = support::packed_cube(9, 1e-7, 0.5, 3);
+  Simulation whole(boxed(4.2e-3), fresh(grains)), part(boxed(4.2e-3), fresh(grains));
+  std::uint64_t built = 0, listed = 0;
+  for (const std::uint64_t steps : {1, 16, 700, 1000, 1, 1282, 2000}) {
+    part.advance(steps);
+    const State state = part.state();
+    built += state.layout.listed_step != listed;
+    listed = state.layout.listed_step;
+    part = Simulation(boxed(4.2e-3), state);
+    expect_same_bytes(part.state(), state);
+  }
   whole.advance(5000);
+  EXPECT_GT(built, 3u);
   EXPECT_GT(whole.contacts(), 10u);
-  expect_same_bytes(whole.state(), second.state());
+  expect_same_bytes(whole.state(), part.state());
+}
+
+TEST(Simulation, RefusesAStateThatDoesNotFitTogether) {
+  omp_set_num_threads(1);
+  Simulation sim(boxed(3.237e-3), fresh(support::packed_cube(7, 1e-7, 0.1, 3)));
+  sim.advance(100);
+  const State sound = sim.state();
+  ASSERT_GT(sound.particles.size(), chunk_rows);
+  using Layout = State::Layout;
+  const std::vector<std::function<void(Layout&)>> damages{
+      [](Layout& l) { l.order[0] = l.order[1]; },
+      [](Layout& l) { l.order.back() = 1000000; },
+      [](Layout& l) { l.order.pop_back(); },
+      [](Layout& l) { l.listed[3].x() = std::nan(""); },
+      [](Layout& l) { l.first.pop_back(); },
+      [](Layout& l) { l.first[5] = 4000000000; },
+      [](Layout& l) { l.second[0] = 4000000000; },
+      [](Layout& l) { std::swap(l.first[0], l.second[0]); },
+      [](Layout& l) { std::swap(l.first.front(), l.first.back()); },
+      [](Layout& l) { l.first.resize(8), l.second.resize(8); },  // contacts without a lane
+      [](Layout& l) { l.skin = 0; },
+      [](Layout& l) { l.next_look = std::nan(""); },
+  };
+  for (std::size_t k = 0; k < damages.size(); ++k) {
+    State damaged = sound;
+    damages[k](damaged.layout);
+    EXPECT_THROW(Simulation(sim.setup(), damaged), CaseError) << "damage " << k;
+  }
+  const std::vector<std::function<void(State&)>> others{
+      [](State& s) { s.force.pop_back(); },
+      [](State& s) { s.pairs[0].j = 4000000000; },
+      [](State& s) { std::swap(s.pairs[0].i, s.pairs[0].j); },
+      [](State& s) { std::swap(s.pairs[0], s.pairs[1]); },
+      [](State& s) { s.pairs[1] = s.pairs[0]; },
+      [](State& s) { s.pairs[0].contact_radius = 0; },
+      [](State& s) { s.wall_pairs[0].i = 4000000000; },
+      [](State& s) { s.wall_pairs[0].wall = 6; },
+      [](State& s) { s.wall_pairs[0].contact_radius = -1; },
+      [](State& s) { std::swap(s.wall_pairs.front(), s.wall_pairs.back()); },
+  };
+  ASSERT_GT(sound.wall_pairs.size(), 1u);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    State damaged = sound;
+    others[k](damaged);
+    EXPECT_THROW(Simulation(sim.setup(), damaged), CaseError) << "damage " << k;
+  }
 }
 
 // Without walls and gravity momentum changes by rounding only, whatever the grains do to each other.

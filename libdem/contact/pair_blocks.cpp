@@ -1,0 +1,145 @@
+#include "libdem/contact/pair_blocks.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace dem {
+namespace {
+
+constexpr std::size_t width = PairContacts::width;
+
+std::size_t chunk_of(std::uint32_t row) { return row / chunk_rows; }
+
+std::uint32_t material_pair(const GrainTable& grains, std::size_t materials, std::uint32_t i, std::uint32_t j) {
+  const auto [a, b] = std::minmax(grains.material[i], grains.material[j]);
+  return std::uint32_t(a * materials + b);
+}
+
+struct Pair {
+  bool crosses;
+  std::uint32_t material_pair;
+  bool apart;
+  double gap;  // m, 0 where they touch
+  std::uint32_t i, j;
+  auto kind() const { return std::tie(crosses, material_pair, apart); }
+  auto key() const { return std::tie(crosses, material_pair, apart, gap, i, j); }
+};
+
+}  // namespace
+
+Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t materials,
+                  const std::function<bool(std::uint32_t, std::uint32_t)>& touches) {
+  const std::size_t chunks = chunks_of(grains.size());
+  std::vector<Lanes> of_chunk(chunks);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t c = 0; c < chunks; ++c) {
+    const std::size_t end = std::min((c + 1) * chunk_rows, grains.size());
+    std::vector<Pair> pairs;
+    for (std::uint32_t s = list.begin[c * chunk_rows]; s < list.begin[end]; ++s) {
+      const std::uint32_t i = list.first[s], j = list.second[s];
+      const bool apart = !touches(i, j);
+      const GrainRow &a = grains.rows[i], &b = grains.rows[j];
+      const double gap = apart ? (a.position() - b.position()).norm() - a.radius() - b.radius() : 0;
+      pairs.push_back({chunk_of(j) != c, material_pair(grains, materials, i, j), apart, gap, i, j});
+    }
+    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.key() < b.key(); });
+    Lanes& lanes = of_chunk[c];
+    const auto fill_up = [&] {
+      while (lanes.size() % width != 0) lanes.push_back({lanes.back()[0], std::uint32_t(grains.size() + c)});
+    };
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      if (k > 0 && pairs[k].kind() != pairs[k - 1].kind()) fill_up();
+      lanes.push_back({pairs[k].i, pairs[k].j});
+    }
+    fill_up();
+  }
+  Lanes lanes;
+  for (const Lanes& part : of_chunk) lanes.insert(lanes.end(), part.begin(), part.end());
+  return lanes;
+}
+
+bool fit(const Lanes& lanes, const GrainTable& grains) {
+  const std::size_t n = grains.size();
+  if (lanes.size() % width != 0) return false;
+  std::pair<std::size_t, bool> last{0, false};
+  for (std::size_t b = 0; b < lanes.size(); b += width) {
+    const auto [i, j] = lanes[b];
+    if (!(i < j && j < n)) return false;
+    const std::pair<std::size_t, bool> kind{chunk_of(i), chunk_of(j) != chunk_of(i)};
+    if (kind < last) return false;
+    last = kind;
+    const std::uint32_t materials = material_pair(grains, 256, i, j);
+    for (std::size_t k = b + 1; k < b + width; ++k) {
+      const auto [x, y] = lanes[k];
+      if (!(x < n && x < y && chunk_of(x) == kind.first)) return false;
+      if (y == n + kind.first) continue;  // the phantom
+      if (!(y < n && (chunk_of(y) != kind.first) == kind.second && material_pair(grains, 256, x, y) == materials)) return false;
+    }
+  }
+  return true;
+}
+
+PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials, bool rolling_spring,
+                                bool keep_ledger) {
+  PairContacts pairs;
+  const std::size_t blocks = lanes.size() / width, chunks = chunks_of(grains.size());
+  pairs.block.resize(blocks);
+  pairs.head.resize(blocks);
+  pairs.birth_step.assign(lanes.size(), 0);
+  pairs.result.resize(lanes.size());
+  if (rolling_spring) pairs.rolling.resize(blocks);
+  if (keep_ledger) pairs.last.resize(lanes.size());
+  pairs.chunk.resize(chunks);
+
+  std::uint32_t crossing = 0;
+  std::size_t at = 0;
+  std::vector<std::uint32_t> incoming(chunks + 1, 0);
+  for (std::size_t c = 0; c < chunks; ++c) {
+    PairContacts::Chunk& chunk = pairs.chunk[c];
+    chunk.begin = chunk.inner_end = std::uint32_t(at);
+    for (; at < blocks && chunk_of(lanes[at * width][0]) == c; ++at) {
+      if (chunk_of(lanes[at * width][1]) == c) {
+        chunk.inner_end = std::uint32_t(at + 1);
+        continue;
+      }
+      pairs.head[at].crossing = crossing;
+      crossing += width;
+      for (std::size_t k = 0; k < width; ++k)
+        if (const std::uint32_t j = lanes[at * width + k][1]; j < grains.size()) ++incoming[chunk_of(j) + 1];
+    }
+    chunk.end = std::uint32_t(at);
+  }
+  pairs.crossing.resize(crossing);
+  for (std::size_t c = 0; c < chunks; ++c) {
+    incoming[c + 1] += incoming[c];
+    pairs.chunk[c].incoming_begin = incoming[c];
+    pairs.chunk[c].incoming_end = incoming[c + 1];
+  }
+  pairs.incoming.resize(incoming[chunks]);
+  for (const PairContacts::Chunk& chunk : pairs.chunk)
+    for (std::uint32_t b = chunk.inner_end; b < chunk.end; ++b)
+      for (std::uint32_t k = 0; k < width; ++k)
+        if (const std::uint32_t j = lanes[b * width + k][1]; j < grains.size())
+          pairs.incoming[incoming[chunk_of(j)]++] = {j, pairs.head[b].crossing + k, b};
+
+#pragma omp parallel for schedule(static)
+  for (std::size_t b = 0; b < blocks; ++b) {
+    PairContacts::Block& block = pairs.block[b];
+    const auto body = [&](std::uint32_t i) { return BodyConstants{grains.rows[i].radius(), grains.mass[i], grains.inertia[i]}; };
+    const std::uint32_t kind = material_pair(grains, materials.size, lanes[b * width][0], lanes[b * width][1]);
+    pairs.head[b].material_pair = kind;
+    for (std::size_t k = 0; k < width; ++k) {
+      const auto [i, j] = lanes[b * width + k];
+      block.first[k] = i;
+      block.second[k] = j;
+      const PairConstants<double> c = pair_constants(materials.pair[kind], body(i), body(j < grains.size() ? j : i));
+      block.effective_radius[k] = c.effective_radius;
+      block.effective_mass[k] = c.effective_mass;
+      block.effective_inertia[k] = c.effective_inertia;
+      block.adhesion_length[k] = c.adhesion_length;
+    }
+  }
+  return pairs;
+}
+
+}  // namespace dem

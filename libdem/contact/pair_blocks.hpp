@@ -1,0 +1,35 @@
+// From a list of pairs to blocks of contacts.
+#pragma once
+#include <array>
+#include <functional>
+
+#include "libdem/contact/contact_store.hpp"
+#include "libdem/neighbors/pair_list.hpp"
+
+namespace dem {
+
+// The grains as the blocks need them, in the order of their rows.
+struct GrainTable {
+  const std::vector<GrainRow>& rows;  // and the phantoms behind them
+  const std::vector<std::uint8_t>& material;
+  const std::vector<double>& mass, &inertia;  // kg, kg m^2
+  std::size_t size() const { return material.size(); }
+};
+
+// Rows of the first and of the second grain, lane by lane, whole blocks.
+using Lanes = std::vector<std::array<std::uint32_t, 2>>;
+
+// Puts the pairs into lanes. All lanes of a block are of one chunk, one pair of materials, and all or none cross to another
+// chunk. Those that touch (`touches(i, j)`) come first and share no block with those that do not, which go by their gap, so that
+// what is far apart can be left alone together.
+Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t materials,
+                  const std::function<bool(std::uint32_t, std::uint32_t)>& touches);
+
+// Are these lanes such as order_lanes() makes, whatever the order of the pairs within a kind and whatever touches?
+bool fit(const Lanes& lanes, const GrainTable& grains);
+
+// Blocks of such lanes, without memory. Condition: they fit.
+PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials, bool rolling_spring,
+                                bool keep_ledger);
+
+}  // namespace dem

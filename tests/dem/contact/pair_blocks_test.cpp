@@ -1,0 +1,141 @@
+#include "libdem/contact/pair_blocks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <random>
+#include <set>
+
+namespace dem {
+namespace {
+
+struct Scene {
+  std::vector<GrainRow> rows;
+  std::vector<std::uint8_t> material;
+  std::vector<double> mass, inertia;
+  PairList list;
+  MaterialTable materials;
+  GrainTable table() const { return {rows, material, mass, inertia}; }
+};
+
+// Grains of two materials, enough for several chunks.
+Scene random_scene(std::size_t n, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> draw(0, 1);
+  Scene s;
+  std::vector<Vec3> x;
+  std::vector<double> radius;
+  for (std::size_t i = 0; i < n; ++i) {
+    x.emplace_back(10 * draw(random), 10 * draw(random), 10 * draw(random));
+    radius.push_back(0.4 + 0.2 * draw(random));
+    GrainRow row;
+    row.place = quad(x[i], radius[i]);
+    s.rows.push_back(row);
+    s.material.push_back(draw(random) < 0.7 ? 0 : 1);
+    s.mass.push_back(1 + draw(random));
+    s.inertia.push_back(1 + draw(random));
+  }
+  s.rows.resize(n + chunks_of(n), phantom());
+  s.list = build_pair_list(x, radius, 0.2);
+  s.materials = make_material_table({{"a", 1, 1e9, 0.2}, {"b", 1, 2e9, 0.3}}, {{{0.9, 0.5, 0, 0.1}, {0.8, 0.4, 0, 0.2}}, {{0.8, 0.4, 0, 0.2}, {0.7, 0.3, 0, 0.3}}});
+  return s;
+}
+
+bool even(std::uint32_t i, std::uint32_t j) { return (i + j) % 2 == 0; }
+
+TEST(PairBlocks, HoldEveryPairOnceInBlocksOfOneKind) {
+  for (const std::size_t n : {0, 1, 2, 40, 256, 257, 1500}) {
+    const Scene s = random_scene(n, n);
+    const Lanes lanes = order_lanes(s.list, s.table(), 2, even);
+    ASSERT_EQ(lanes.size() % PairContacts::width, 0u);
+    EXPECT_TRUE(fit(lanes, s.table()));
+    std::multiset<std::pair<std::uint32_t, std::uint32_t>> found, expected;
+    for (std::size_t k = 0; k < s.list.size(); ++k) expected.emplace(s.list.first[k], s.list.second[k]);
+    for (std::size_t b = 0; b < lanes.size(); b += PairContacts::width) {
+      const auto chunk = [](std::uint32_t row) { return row / chunk_rows; };
+      const auto kind = [&](std::size_t k) {
+        const auto [i, j] = lanes[k];
+        return std::tuple(chunk(i), chunk(i) == chunk(j), std::minmax(s.material[i], s.material[j]), even(i, j));
+      };
+      for (std::size_t k = b; k < b + PairContacts::width; ++k) {
+        const auto [i, j] = lanes[k];
+        if (j >= n) {
+          ASSERT_GT(k, b) << "a block without a pair";
+          ASSERT_EQ(j, n + chunk(i));  // the chunk's own phantom
+          ASSERT_EQ(chunk(i), chunk(lanes[b][0]));
+          continue;
+        }
+        ASSERT_EQ(kind(k), kind(b));
+        found.emplace(i, j);
+      }
+    }
+    EXPECT_EQ(found, expected) << n << " grains";
+  }
+}
+
+TEST(PairBlocks, LanesThatDoNotFitAreFound) {
+  const Scene s = random_scene(600, 5);
+  const Lanes lanes = order_lanes(s.list, s.table(), 2, even);
+  const std::size_t last = lanes.size() - PairContacts::width;
+  const std::vector<std::function<void(Lanes&)>> damages{
+      [](Lanes& l) { l.pop_back(); },
+      [](Lanes& l) { std::swap(l[1][0], l[1][1]); },
+      [](Lanes& l) { l[2][1] = 600 + 2; },        // the phantom of another chunk
+      [](Lanes& l) { l[0][1] = 600; },            // a block that begins with a phantom
+      [](Lanes& l) { l[3] = {0, 599}; },          // crosses, its block does not
+      [&](Lanes& l) { std::swap_ranges(l.begin(), l.begin() + 8, l.begin() + std::ptrdiff_t(last)); },  // chunks out of order
+      [](Lanes& l) { l[4][1] = 4000000000; },
+  };
+  for (std::size_t k = 0; k < damages.size(); ++k) {
+    Lanes damaged = lanes;
+    damages[k](damaged);
+    EXPECT_FALSE(fit(damaged, s.table())) << "damage " << k;
+  }
+}
+
+TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
+  const std::size_t n = 1500;
+  const Scene s = random_scene(n, 7);
+  const Lanes lanes = order_lanes(s.list, s.table(), 2, even);
+  const PairContacts pairs = make_pair_contacts(lanes, s.table(), s.materials, true, true);
+  EXPECT_EQ(pairs.lanes(), lanes.size());
+  EXPECT_EQ(pairs.last.size(), lanes.size());
+  EXPECT_EQ(pairs.rolling.size(), pairs.block.size());
+  std::map<std::uint32_t, std::uint32_t> crossing;  // row in `crossing`: second grain
+  ASSERT_EQ(pairs.chunk.size(), chunks_of(n));
+  for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
+    for (std::uint32_t b = pairs.chunk[c].begin; b < pairs.chunk[c].end; ++b)
+      for (std::uint32_t k = 0; k < PairContacts::width; ++k) {
+        const auto [i, j] = lanes[PairContacts::width * b + k];
+        ASSERT_EQ(pairs.block[b].first[k], i);
+        ASSERT_EQ(pairs.block[b].second[k], j);
+        ASSERT_EQ(i / chunk_rows, c);
+        EXPECT_EQ(pairs.block[b].contact_radius[k], 0);
+        if (j >= n) continue;
+        ASSERT_EQ(b < pairs.chunk[c].inner_end, j / chunk_rows == c);
+        if (b >= pairs.chunk[c].inner_end) {
+          ASSERT_TRUE(crossing.emplace(pairs.head[b].crossing + k, j).second);
+        }
+        const PairConstants<double>& kind = s.materials.pair[pairs.head[b].material_pair];
+        EXPECT_EQ(kind.work_of_adhesion, s.materials(s.material[i], s.material[j]).work_of_adhesion);
+        const PairConstants<double> expected =
+            pair_constants(kind, {s.rows[i].radius(), s.mass[i], s.inertia[i]}, {s.rows[j].radius(), s.mass[j], s.inertia[j]});
+        EXPECT_EQ(pairs.block[b].effective_radius[k], expected.effective_radius);
+        EXPECT_EQ(pairs.block[b].effective_mass[k], expected.effective_mass);
+        EXPECT_EQ(pairs.block[b].effective_inertia[k], expected.effective_inertia);
+        EXPECT_EQ(pairs.block[b].adhesion_length[k], expected.adhesion_length);
+      }
+  // Every crossing is announced to the chunk of the second grain, once.
+  std::map<std::uint32_t, std::uint32_t> announced;
+  for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
+    for (std::uint32_t k = pairs.chunk[c].incoming_begin; k < pairs.chunk[c].incoming_end; ++k) {
+      EXPECT_EQ(pairs.incoming[k].row / chunk_rows, c);
+      EXPECT_TRUE(announced.emplace(pairs.incoming[k].crossing, pairs.incoming[k].row).second);
+    }
+  EXPECT_EQ(announced, crossing);
+  EXPECT_GT(crossing.size(), 100u);
+}
+
+}  // namespace
+}  // namespace dem
