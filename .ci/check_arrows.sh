@@ -31,7 +31,7 @@ tests/support
 tests/dem           libdem tests/support
 tests/jam           libjam tests/support
 tests/app           libdem libjam apps tests/support
-tests/bench         libdem libjam apps tests/support
+tests/bench         libdem libjam apps tests/support tests/dem
 TABLE
 
 find libdem libjam apps tests -name node_modules -prune -o \( -name '*.hpp' -o -name '*.cpp' \) -print | sort |
