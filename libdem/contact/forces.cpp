@@ -54,7 +54,8 @@ PairConstants<Pack> each_material(Get get) {
   PairConstants<Pack> c;
   c.effective_modulus = each(&C::effective_modulus);
   c.effective_shear = each(&C::effective_shear);
-  c.damping_ratio = each(&C::damping_ratio);
+  c.normal_damping = each(&C::normal_damping);
+  c.tangential_damping = each(&C::tangential_damping);
   c.friction = each(&C::friction);
   c.rolling_friction = each(&C::rolling_friction);
   c.rolling_damping = each(&C::rolling_damping);

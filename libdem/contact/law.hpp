@@ -29,7 +29,7 @@ concept NormalLaw = requires(const double& overlap, const PairConstants<double>&
 template <class T>
 concept DampingLaw = requires(const double& overlap, const NormalForce<double>& n, const PairConstants<double>& c) {
   { T::name } -> std::convertible_to<std::string_view>;
-  { T::ratio(overlap) } -> std::same_as<double>;
+  { T::per_root(overlap, overlap, overlap) } -> std::same_as<DampingCoefficients<double>>;
   { T::evaluate(overlap, n, c) } -> std::same_as<DampingCoefficients<double>>;
 };
 

@@ -11,8 +11,11 @@ MaterialTable make_material_table(const std::vector<Material>& materials,
       const Interaction& law = interactions[a][b];
       c.effective_modulus = effective_modulus(materials[a], materials[b]);
       c.effective_shear = effective_shear_modulus(materials[a], materials[b]);
-      c.damping_ratio =
-          with_part<DampingLaws>(choice.damping, [&](auto part) { return part.ratio(law.restitution); });
+      const DampingCoefficients<double> damping = with_part<DampingLaws>(choice.damping, [&](auto part) {
+        return part.per_root(law.restitution, c.effective_modulus, c.effective_shear);
+      });
+      c.normal_damping = damping.normal;
+      c.tangential_damping = damping.tangential;
       c.friction = law.friction;
       c.rolling_friction = law.rolling_friction;
       c.rolling_damping = law.rolling_damping;

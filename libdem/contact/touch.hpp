@@ -23,7 +23,7 @@ template <class Real>
 struct PairConstants {
   Real effective_modulus;   // Pa, E*: 1/E* = (1-nu_i^2)/E_i + (1-nu_j^2)/E_j
   Real effective_shear;     // Pa, G*: 1/G* = (2-nu_i)/G_i + (2-nu_j)/G_j
-  Real damping_ratio;       // 1, >= 0, made from the restitution by the damping law's ratio()
+  Real normal_damping, tangential_damping;  // sqrt(Pa), >= 0, the damping law's per_root() of the restitution
   Real friction;            // 1
   Real rolling_friction;    // 1
   Real rolling_damping;     // 1, share of critical damping of an elastic rolling resistance
@@ -52,7 +52,8 @@ struct NormalForce {
   Real surface_energy;  // J, <= 0, the part of `energy` that is gained by closing surfaces
 };
 
-// kg/s: what multiplies the closing speed and the sliding speed.
+// kg/s: what multiplies the closing speed and the sliding speed. Where a damping law says so, over the root of a radius of the
+// contact times the effective mass, in sqrt(Pa).
 template <class Real>
 struct DampingCoefficients {
   Real normal, tangential;

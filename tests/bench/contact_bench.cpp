@@ -36,7 +36,7 @@ Touches make_touches(std::size_t packs) {
   const BodyConstants body{radius, mass, sphere_inertia(mass, radius)};
   const PairConstants<double> c = pair_constants(make_material_table(glass.materials, glass.interactions)(0, 0), body, body);
   Touches t;
-  t.constants = {c.effective_modulus, c.effective_shear, c.damping_ratio, c.friction, c.rolling_friction, c.rolling_damping,
+  t.constants = {c.effective_modulus, c.effective_shear, c.normal_damping, c.tangential_damping, c.friction, c.rolling_friction, c.rolling_damping,
                  c.work_of_adhesion, c.effective_radius, c.effective_mass, c.effective_inertia, c.adhesion_length};
   for (std::size_t k = 0; k < packs; ++k) {
     Touch<Pack> touch;

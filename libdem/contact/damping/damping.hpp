@@ -2,6 +2,7 @@
 //
 // A damped Hertz impact, F_d = c v with c proportional to overlap^(1/4), is a linear damped oscillator in overlap^(5/4)
 // (Tsuji, Tanaka and Ishida 1992; Antypov and Elliott 2011, EPL 94, 50004), so that the restitution does not depend on speed.
+// Each law is per_root() of the materials times sqrt(radius m*).
 #pragma once
 #include <cmath>
 #include <numbers>
@@ -20,21 +21,24 @@ inline double damping_ratio(double restitution) {
 }
 
 namespace damping {
-inline constexpr double two_root_five_sixths = 2 * 0.91287092917527690;
-
 // c = 2 sqrt(5/6) beta sqrt(S m*), S_n = 2 E* r and S_t = 8 G* r with a radius r of the contact (EDEM's Hertz-Mindlin model).
+inline DampingCoefficients<double> per_root(double restitution, double effective_modulus, double effective_shear) {
+  const double factor = 2 * std::sqrt(5.0 / 6.0) * damping_ratio(restitution);
+  return {factor * std::sqrt(2 * effective_modulus), factor * std::sqrt(8 * effective_shear)};
+}
 template <class Real>
 DampingCoefficients<Real> of_radius(const Real& radius, const PairConstants<Real>& c) {
-  const Real factor = two_root_five_sixths * c.damping_ratio;
-  return {factor * square_root(2.0 * c.effective_modulus * radius * c.effective_mass),
-          factor * square_root(8.0 * c.effective_shear * radius * c.effective_mass)};
+  const Real root = square_root(radius * c.effective_mass);
+  return {c.normal_damping * root, c.tangential_damping * root};
 }
 }  // namespace damping
 
 // With the law's own contact radius: continuous through zero overlap, damps necks too.
 struct ContactRadiusDamping {
   static constexpr std::string_view name = "contact_radius";
-  static double ratio(double restitution) { return damping_ratio(restitution); }
+  static DampingCoefficients<double> per_root(double restitution, double modulus, double shear) {
+    return damping::per_root(restitution, modulus, shear);
+  }
   template <class Real>
   static DampingCoefficients<Real> evaluate(const Real&, const NormalForce<Real>& normal, const PairConstants<Real>& c) {
     return damping::of_radius(normal.contact_radius, c);
@@ -44,7 +48,9 @@ struct ContactRadiusDamping {
 // With sqrt(R* overlap), Hertz's radius, whatever the normal law: EDEM's JKR model to the letter. No damping in a neck.
 struct OverlapDamping {
   static constexpr std::string_view name = "overlap";
-  static double ratio(double restitution) { return damping_ratio(restitution); }
+  static DampingCoefficients<double> per_root(double restitution, double modulus, double shear) {
+    return damping::per_root(restitution, modulus, shear);
+  }
   template <class Real>
   static DampingCoefficients<Real> evaluate(const Real& overlap, const NormalForce<Real>&, const PairConstants<Real>& c) {
     return damping::of_radius(square_root(c.effective_radius * larger(overlap, Real(0.0))), c);
@@ -56,14 +62,14 @@ struct OverlapDamping {
 // for m and returns with more than the set restitution: 0.928 for 0.9.)
 struct TsujiDamping {
   static constexpr std::string_view name = "tsuji";
-  static double ratio(double restitution) {
+  static DampingCoefficients<double> per_root(double restitution, double modulus, double) {
     const double e = restitution;
-    return 1.2728 + e * (-4.2783 + e * (11.087 + e * (-22.348 + e * (27.467 + e * (-18.022 + e * 4.8218)))));
+    const double alpha = 1.2728 + e * (-4.2783 + e * (11.087 + e * (-22.348 + e * (27.467 + e * (-18.022 + e * 4.8218)))));
+    return {alpha * std::sqrt(8.0 / 3.0 * modulus), alpha * std::sqrt(8.0 / 3.0 * modulus)};
   }
   template <class Real>
   static DampingCoefficients<Real> evaluate(const Real&, const NormalForce<Real>& normal, const PairConstants<Real>& c) {
-    const Real both = c.damping_ratio * square_root((8.0 / 3.0) * c.effective_modulus * normal.contact_radius * c.effective_mass);
-    return {both, both};
+    return damping::of_radius(normal.contact_radius, c);
   }
 };
 

@@ -207,7 +207,7 @@ TEST(EveryLaw, TakesEnergyByDampingSlidingAndRolling) {
       // stretched to carry its share, see springs.hpp.)
       Springs<double> undamped_springs = s.springs;
       PairConstants<double> undamped = c;
-      undamped.damping_ratio = 0;
+      undamped.normal_damping = undamped.tangential_damping = 0;
       const ContactForce<double> slow = evaluate(law, s.touch, undamped, undamped_springs, 1e-14);
       EXPECT_GE(slow.tangential.slip_work, -1e-12 * (slow.tangential.slip_work + slow.tangential.energy));
       slipped += slow.tangential.slip_work > 1e-3 * slow.tangential.energy ? 1 : 0;
@@ -268,7 +268,8 @@ TEST(EveryLaw, APackGivesTheSameBitsAsSingleNumbers) {
     PairConstants<Pack> packed;
     packed.effective_modulus = c.effective_modulus;
     packed.effective_shear = c.effective_shear;
-    packed.damping_ratio = c.damping_ratio;
+    packed.normal_damping = c.normal_damping;
+    packed.tangential_damping = c.tangential_damping;
     packed.friction = c.friction;
     packed.rolling_friction = c.rolling_friction;
     packed.rolling_damping = c.rolling_damping;
