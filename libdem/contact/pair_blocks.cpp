@@ -8,7 +8,9 @@ namespace {
 
 constexpr std::size_t width = PairContacts::width;
 
-std::size_t chunk_of(std::uint32_t row) { return row / chunk_rows; }
+std::size_t chunk_of(std::uint32_t row) {
+  return row / chunk_rows;
+}
 
 std::uint32_t material_pair(const GrainTable& grains, std::size_t materials, std::uint32_t i, std::uint32_t j) {
   const auto [a, b] = std::minmax(grains.material[i], grains.material[j]);
@@ -73,14 +75,15 @@ bool fit(const Lanes& lanes, const GrainTable& grains) {
       const auto [x, y] = lanes[k];
       if (!(x < n && x < y && chunk_of(x) == kind.first)) return false;
       if (y == n + kind.first) continue;  // the phantom
-      if (!(y < n && (chunk_of(y) != kind.first) == kind.second && material_pair(grains, 256, x, y) == materials)) return false;
+      if (!(y < n && (chunk_of(y) != kind.first) == kind.second && material_pair(grains, 256, x, y) == materials))
+        return false;
     }
   }
   return true;
 }
 
-PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials, bool rolling_spring,
-                                bool keep_ledger) {
+PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
+                                bool rolling_spring, bool keep_ledger) {
   PairContacts pairs;
   const std::size_t blocks = lanes.size() / width, chunks = chunks_of(grains.size());
   pairs.block.resize(blocks);
@@ -125,7 +128,9 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
 #pragma omp parallel for schedule(static)
   for (std::size_t b = 0; b < blocks; ++b) {
     PairContacts::Block& block = pairs.block[b];
-    const auto body = [&](std::uint32_t i) { return BodyConstants{grains.rows[i].radius(), grains.mass[i], grains.inertia[i]}; };
+    const auto body = [&](std::uint32_t i) {
+      return BodyConstants{grains.rows[i].radius(), grains.mass[i], grains.inertia[i]};
+    };
     const std::uint32_t kind = material_pair(grains, materials.size, lanes[b * width][0], lanes[b * width][1]);
     pairs.head[b].material_pair = kind;
     for (std::size_t k = 0; k < width; ++k) {

@@ -12,16 +12,16 @@ namespace dem {
 struct GrainTable {
   const std::vector<GrainRow>& rows;  // and the phantoms behind them
   const std::vector<std::uint8_t>& material;
-  const std::vector<double>& mass, &inertia;  // kg, kg m^2
+  const std::vector<double>&mass, &inertia;  // kg, kg m^2
   std::size_t size() const { return material.size(); }
 };
 
 // Rows of the first and of the second grain, lane by lane, whole blocks.
 using Lanes = std::vector<std::array<std::uint32_t, 2>>;
 
-// Puts the pairs into lanes. All lanes of a block are of one chunk, one pair of materials, and all or none cross to another
-// chunk. Those that touch (`touches(i, j)`) come first and share no block with those that do not, which go by their gap, so that
-// what is far apart can be left alone together.
+// Puts the pairs into lanes. All lanes of a block are of one chunk, one pair of materials, and all or none cross to
+// another chunk. Those that touch (`touches(i, j)`) come first and share no block with those that do not, which go by
+// their gap, so that what is far apart can be left alone together.
 Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t materials,
                   const std::function<bool(std::uint32_t, std::uint32_t)>& touches);
 
@@ -29,7 +29,7 @@ Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t ma
 bool fit(const Lanes& lanes, const GrainTable& grains);
 
 // Blocks of such lanes, without memory. Condition: they fit.
-PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials, bool rolling_spring,
-                                bool keep_ledger);
+PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
+                                bool rolling_spring, bool keep_ledger);
 
 }  // namespace dem

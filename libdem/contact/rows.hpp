@@ -1,5 +1,5 @@
-// Between rows of four or eight doubles in memory (a grain's place, the force on it) and packs that hold one component of
-// several rows each.
+// Between rows of four or eight doubles in memory (a grain's place, the force on it) and packs that hold one component
+// of several rows each.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -30,7 +30,8 @@ std::array<Pack, 4> load_quads(Row row) {
     const __m512d a = both(0), b = both(1), c = both(2), d = both(3);
     const __m512d u = _mm512_unpacklo_pd(a, b), v = _mm512_unpackhi_pd(a, b);
     const __m512d w = _mm512_unpacklo_pd(c, d), x = _mm512_unpackhi_pd(c, d);
-    const __m512i even = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13), odd = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    const __m512i even = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13),
+                  odd = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
     return {Pack(_mm512_permutex2var_pd(u, even, w)), Pack(_mm512_permutex2var_pd(v, even, x)),
             Pack(_mm512_permutex2var_pd(u, odd, w)), Pack(_mm512_permutex2var_pd(v, odd, x))};
   }
@@ -74,7 +75,9 @@ inline void add_row(ForceRow& to, const __m512d& row) {
   double* p = to.force.data();
   _mm512_store_pd(p, _mm512_add_pd(_mm512_load_pd(p), row));
 }
-inline void store_row(ForceRow& to, const __m512d& row) { _mm512_store_pd(to.force.data(), row); }
+inline void store_row(ForceRow& to, const __m512d& row) {
+  _mm512_store_pd(to.force.data(), row);
+}
 #endif
 inline void add_row(ForceRow& to, const Eigen::Matrix<double, 8, 1>& row) {
   to.force += row.head<4>();

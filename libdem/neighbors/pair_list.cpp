@@ -78,23 +78,24 @@ PairList build_pair_list(const std::vector<Vec3>& position, const std::vector<do
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> found((n + rows - 1) / rows);
 #pragma omp parallel for schedule(static)
   for (std::size_t r = 0; r < found.size(); ++r)
-  for (std::size_t i = r * rows; i < std::min((r + 1) * rows, n); ++i) {
-    const Cell c = grid.cell_of(position[i]);
-    const std::int64_t reach = std::max<std::int64_t>(1, std::int64_t(std::ceil((2 * radius[i] + skin) / grid.edge)));
-    const auto low = [&](std::size_t k) { return std::max<std::int64_t>(c[k] - reach, 0); };
-    const auto high = [&](std::size_t k) { return std::min(c[k] + reach, grid.cells[k] - 1); };
-    for (std::int64_t z = low(2); z <= high(2); ++z)
-      for (std::int64_t y = low(1); y <= high(1); ++y)
-        for (std::int64_t x = low(0); x <= high(0); ++x) {
-          const std::size_t k = grid.index({x, y, z});
-          for (std::uint32_t m = grid.begin[k]; m < grid.begin[k + 1]; ++m) {
-            const std::uint32_t j = grid.member[m];
-            if (radius[j] > radius[i] || (radius[j] == radius[i] && j <= i)) continue;
-            const double near = radius[i] + radius[j] + skin;
-            if ((position[i] - position[j]).squaredNorm() < near * near) found[r].emplace_back(std::min(std::uint32_t(i), j), std::max(std::uint32_t(i), j));
+    for (std::size_t i = r * rows; i < std::min((r + 1) * rows, n); ++i) {
+      const Cell c = grid.cell_of(position[i]);
+      const std::int64_t reach = std::max<std::int64_t>(1, std::int64_t(std::ceil((2 * radius[i] + skin) / grid.edge)));
+      const auto low = [&](std::size_t k) { return std::max<std::int64_t>(c[k] - reach, 0); };
+      const auto high = [&](std::size_t k) { return std::min(c[k] + reach, grid.cells[k] - 1); };
+      for (std::int64_t z = low(2); z <= high(2); ++z)
+        for (std::int64_t y = low(1); y <= high(1); ++y)
+          for (std::int64_t x = low(0); x <= high(0); ++x) {
+            const std::size_t k = grid.index({x, y, z});
+            for (std::uint32_t m = grid.begin[k]; m < grid.begin[k + 1]; ++m) {
+              const std::uint32_t j = grid.member[m];
+              if (radius[j] > radius[i] || (radius[j] == radius[i] && j <= i)) continue;
+              const double near = radius[i] + radius[j] + skin;
+              if ((position[i] - position[j]).squaredNorm() >= near * near) continue;
+              found[r].emplace_back(std::min(std::uint32_t(i), j), std::max(std::uint32_t(i), j));
+            }
           }
-        }
-  }
+    }
 
   for (const auto& pairs : found)
     for (const auto& [i, j] : pairs) ++list.begin[i + 1];

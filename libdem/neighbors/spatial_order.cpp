@@ -25,8 +25,9 @@ std::vector<std::uint32_t> spatial_order(const std::vector<Vec3>& position, doub
   std::vector<std::pair<std::uint64_t, std::uint32_t>> key(position.size());
   for (std::size_t i = 0; i < position.size(); ++i) {
     const Vec3 cell = ((position[i] - low) / edge).cwiseMin(double((1 << 21) - 1));
-    key[i] = {spread(std::uint64_t(cell.x())) | spread(std::uint64_t(cell.y())) << 1 | spread(std::uint64_t(cell.z())) << 2,
-              std::uint32_t(i)};
+    key[i] = {
+        spread(std::uint64_t(cell.x())) | spread(std::uint64_t(cell.y())) << 1 | spread(std::uint64_t(cell.z())) << 2,
+        std::uint32_t(i)};
   }
   std::sort(key.begin(), key.end());
   std::vector<std::uint32_t> order(position.size());

@@ -38,11 +38,15 @@ Scene random_scene(std::size_t n, std::uint64_t seed) {
   }
   s.rows.resize(n + chunks_of(n), phantom());
   s.list = build_pair_list(x, radius, 0.2);
-  s.materials = make_material_table({{"a", 1, 1e9, 0.2}, {"b", 1, 2e9, 0.3}}, {{{0.9, 0.5, 0, 0.1}, {0.8, 0.4, 0, 0.2}}, {{0.8, 0.4, 0, 0.2}, {0.7, 0.3, 0, 0.3}}});
+  s.materials =
+      make_material_table({{"a", 1, 1e9, 0.2}, {"b", 1, 2e9, 0.3}},
+                          {{{0.9, 0.5, 0, 0.1}, {0.8, 0.4, 0, 0.2}}, {{0.8, 0.4, 0, 0.2}, {0.7, 0.3, 0, 0.3}}});
   return s;
 }
 
-bool even(std::uint32_t i, std::uint32_t j) { return (i + j) % 2 == 0; }
+bool even(std::uint32_t i, std::uint32_t j) {
+  return (i + j) % 2 == 0;
+}
 
 TEST(PairBlocks, HoldEveryPairOnceInBlocksOfOneKind) {
   for (const std::size_t n : {0, 1, 2, 40, 256, 257, 1500}) {
@@ -81,10 +85,14 @@ TEST(PairBlocks, LanesThatDoNotFitAreFound) {
   const std::vector<std::function<void(Lanes&)>> damages{
       [](Lanes& l) { l.pop_back(); },
       [](Lanes& l) { std::swap(l[1][0], l[1][1]); },
-      [](Lanes& l) { l[2][1] = 600 + 2; },        // the phantom of another chunk
-      [](Lanes& l) { l[0][1] = 600; },            // a block that begins with a phantom
-      [](Lanes& l) { l[3] = {0, 599}; },          // crosses, its block does not
-      [&](Lanes& l) { std::swap_ranges(l.begin(), l.begin() + 8, l.begin() + std::ptrdiff_t(last)); },  // chunks out of order
+      [](Lanes& l) { l[2][1] = 600 + 2; },  // the phantom of another chunk
+      [](Lanes& l) { l[0][1] = 600; },      // a block that begins with a phantom
+      [](Lanes& l) {
+        l[3] = {0, 599};
+      },  // crosses, its block does not
+      [&](Lanes& l) {
+        std::swap_ranges(l.begin(), l.begin() + 8, l.begin() + std::ptrdiff_t(last));
+      },  // chunks out of order
       [](Lanes& l) { l[4][1] = 4000000000; },
   };
   for (std::size_t k = 0; k < damages.size(); ++k) {
@@ -119,8 +127,8 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
         }
         const PairConstants<double>& kind = s.materials.pair[pairs.head[b].material_pair];
         EXPECT_EQ(kind.work_of_adhesion, s.materials(s.material[i], s.material[j]).work_of_adhesion);
-        const PairConstants<double> expected =
-            pair_constants(kind, {s.rows[i].radius(), s.mass[i], s.inertia[i]}, {s.rows[j].radius(), s.mass[j], s.inertia[j]});
+        const PairConstants<double> expected = pair_constants(kind, {s.rows[i].radius(), s.mass[i], s.inertia[i]},
+                                                              {s.rows[j].radius(), s.mass[j], s.inertia[j]});
         EXPECT_EQ(pairs.block[b].effective_radius[k], expected.effective_radius);
         EXPECT_EQ(pairs.block[b].effective_mass[k], expected.effective_mass);
         EXPECT_EQ(pairs.block[b].effective_inertia[k], expected.effective_inertia);

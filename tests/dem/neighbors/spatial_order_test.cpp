@@ -32,8 +32,8 @@ TEST(SpatialOrder, IsAPermutationThatKeepsTheOrderWithinACell) {
   EXPECT_TRUE(spatial_order({}, 1).empty());
 }
 
-// What the order is for: of grains side by side in a cube of 32^3, most are in the same chunk of 256 rows, while in an order row by
-// row of the lattice none of the neighbours in z is.
+// What the order is for: of grains side by side in a cube of 32^3, most are in the same chunk of 256 rows, while in an
+// order row by row of the lattice none of the neighbours in z is.
 TEST(SpatialOrder, KeepsNeighboursTogether) {
   constexpr std::size_t side = 32;
   std::vector<Vec3> x;
