@@ -1,5 +1,5 @@
-// A settled bed of grains in a vessel, a box or a heap: settled from a random suspension while soft, cut, then stiffened in
-// stages to the true modulus and brought to rest, which is proved and not assumed (libdem/bed/rest.hpp).
+// A settled bed of grains in a vessel, a box or a heap: settled from a random suspension while soft, cut, stiffened in stages
+// to the true modulus, cut again as it swells, and brought to rest, which is proved and not assumed (libdem/bed/rest.hpp).
 #pragma once
 #include <functional>
 #include <string>
@@ -10,7 +10,7 @@
 namespace dem {
 
 // Changes whenever the recipe below would give other grains, so that stored beds of an older recipe are not taken for new.
-inline constexpr int bed_recipe = 2;
+inline constexpr int bed_recipe = 3;
 
 struct BedProgress {
   std::string stage;         // "placing", "pouring", "cutting", "stiffening to 2.4 GPa", "resting", "probing"

@@ -69,11 +69,22 @@ TEST(Jkr, CarriesThePullOffForceAtMost) {
   EXPECT_NEAR(pulled(JkrForceMinimum{}), 1, 1e-12);
 }
 
-TEST(Jkr, TheRootSolvesItsQuarticOverTwelveDecades) {
-  for (double exponent = -6; exponent <= 6; exponent += 0.01) {
-    const double delta = std::pow(10.0, exponent), y = jkr_root(delta);
-    // One unit in the last place of y, 4 * 2.2e-16 of y^4, and the rounding of this line, 3.3e-16.
-    EXPECT_NEAR(y * y * y * y - y, delta, 1.25e-15 * (y * y * y * y + y)) << delta;
+// Against Newton's iteration on the quartic in extended precision. Three half units in the last place, 1.1e-16 each: the
+// residual of Halley's step (four roundings, of which a quarter reaches y), the distance e from the turning point, and the
+// sum y_c + e. Towards the turning point the overlap's own rounding counts by d(y)/d(delta) = 1/(4 y^3 - 1).
+TEST(Jkr, TheRootIsRightToRoundingOverTwelveDecadesAndInTension) {
+  const auto error = [](double delta) {
+    const double y = jkr_root(delta);
+    long double exact = y;
+    for (int k = 0; k < 8; ++k)
+      exact -= (exact * exact * exact * exact - exact - delta) / (4 * exact * exact * exact - 1);
+    return std::abs(double((y - exact) / exact));
+  };
+  for (double exponent = -6; exponent <= 6; exponent += 0.001)
+    EXPECT_LE(error(std::pow(10.0, exponent)), 3.4e-16) << exponent;
+  for (double share = 0; share < 0.99999; share += 1e-4) {
+    const double delta = share * jkr_break, y = jkr_root(delta);
+    EXPECT_LE(error(delta), 3.4e-16 * (1 + 1 / (4 * y * y * y - 1))) << share;
   }
 }
 
