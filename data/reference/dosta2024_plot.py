@@ -68,7 +68,7 @@ def draw(scene, title, label, scale):
     for k, (code, curve) in enumerate(sorted(found.items())):
         path = " ".join(f"{px(t):.1f},{py(v * scale):.1f}" for t, v in curve)
         out.append(f'<polyline points="{path}" fill="none" stroke="{COLOURS[code]}" stroke-width="2"/>')
-        out.append(f'<text x="{WIDTH - RIGHT - 90}" y="{TOP + 18 + 16 * k}" fill="{COLOURS[code]}">{code}</text>')
+        out.append(f'<text x="{WIDTH - RIGHT - 90}" y="{HEIGHT - BOTTOM - 28 - 16 * k}" fill="{COLOURS[code]}">{code}</text>')
     out.append("</svg>")
     (HERE / f"dosta2024_{scene}.svg").write_text("\n".join(out) + "\n")
 
