@@ -1,0 +1,231 @@
+#include "libdem/simulation/contact_memory.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "libdem/errors.hpp"
+#include "libdem/neighbors/pair_list.hpp"
+
+namespace dem {
+namespace {
+
+// The same contact seen from the other grain.
+State::Pair swapped(State::Pair c) {
+  std::swap(c.i, c.j);
+  c.spring = -c.spring;
+  c.rolling = -c.rolling;
+  return c;
+}
+LastForces swapped(LastForces last) {
+  last.normal = -last.normal;
+  std::swap(last.arm_i, last.arm_j);
+  last.tangential_elastic = -last.tangential_elastic;
+  last.tangential_viscous = -last.tangential_viscous;
+  std::swap(last.rolling_i, last.rolling_j);
+  return last;
+}
+
+// Where the pairs of each row begin; [N+1].
+template <class Pairs>
+std::vector<std::uint32_t> first_of_rows(const Pairs& pairs, std::size_t n) {
+  std::vector<std::uint32_t> begin(n + 1, 0);
+  for (const auto& c : pairs) ++begin[c.i + 1];
+  for (std::size_t i = 0; i < n; ++i) begin[i + 1] += begin[i];
+  return begin;
+}
+
+// The row in memory.pairs of a pair of the caller's rows, or -1.
+std::int64_t find(const Memory& memory, const std::vector<std::uint32_t>& begin, std::uint32_t i, std::uint32_t j) {
+  const auto [a, b] = std::minmax(i, j);
+  for (std::uint32_t k = begin[a]; k < begin[a + 1]; ++k)
+    if (memory.pairs[k].j == b) return k;
+  return -1;
+}
+
+bool has_rolling_spring(const LawChoice& law) {
+  return with_part<RollingLaws>(law.rolling, [](auto part) { return part.has_spring; });
+}
+
+}  // namespace
+
+// What indexes must be in range and in order before anything follows them.
+void check(const Memory& memory, std::size_t n, std::size_t walls) {
+  const auto refuse = [](const std::string& what) { throw CaseError("the stored state has " + what); };
+  for (std::size_t k = 0; k < memory.pairs.size(); ++k) {
+    const State::Pair& c = memory.pairs[k];
+    if (c.j >= n || c.i >= c.j) refuse("a contact between grains that it does not have");
+    if (k > 0 && std::tuple(memory.pairs[k - 1].i, memory.pairs[k - 1].j) >= std::tuple(c.i, c.j))
+      refuse("contacts that are not in ascending order of their grains");
+    if (!(c.contact_radius > 0)) refuse("a contact without a contact radius");
+  }
+  for (std::size_t k = 0; k < memory.wall_pairs.size(); ++k) {
+    const State::WallPair& c = memory.wall_pairs[k];
+    if (c.i >= n || c.wall >= walls) refuse("a contact with a wall that is not there");
+    if (k > 0 && memory.wall_pairs[k - 1].i > c.i) refuse("wall contacts that are not in ascending order of their grains");
+    if (!(c.contact_radius > 0)) refuse("a wall contact without a contact radius");
+  }
+}
+
+Lanes list_pairs(const ListInput& in, const GrainStore& grains, const Memory& memory) {
+  const std::size_t n = grains.size();
+  std::vector<Vec3> position(n);
+  std::vector<double> radius(n);
+  for (std::size_t r = 0; r < n; ++r) {
+    position[r] = grains.rows[r].position();
+    radius[r] = grains.rows[r].radius();
+  }
+  const std::vector<std::uint32_t> begin = first_of_rows(memory.pairs, n);
+  const auto touches = [&](std::uint32_t i, std::uint32_t j) {
+    return find(memory, begin, grains.order[i], grains.order[j]) >= 0;
+  };
+  return order_lanes(build_pair_list(position, radius, in.skin), grains.table(), in.materials.size, touches);
+}
+
+PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const GrainStore& grains, const Memory& memory) {
+  const bool rolling_spring = has_rolling_spring(in.setup.law), keep_ledger = in.setup.keep_ledger;
+  const std::vector<std::uint32_t>& order = grains.order;
+  const std::vector<std::uint32_t> begin = first_of_rows(memory.pairs, grains.size());
+  PairContacts pairs = make_pair_contacts(lanes, grains.table(), in.materials, rolling_spring, keep_ledger);
+  std::size_t remembered = 0;
+#pragma omp parallel for schedule(static) reduction(+ : remembered)
+  for (std::size_t b = 0; b < pairs.block.size(); ++b)
+    for (std::size_t k = 0; k < PairContacts::width; ++k) {
+      PairContacts::Block& block = pairs.block[b];
+      if (block.second[k] >= grains.size()) continue;
+      const std::int64_t known = find(memory, begin, order[block.first[k]], order[block.second[k]]);
+      if (known < 0) continue;
+      const State::Pair& kept = memory.pairs[std::size_t(known)];
+      const bool turned = order[block.first[k]] != kept.i;
+      const State::Pair c = turned ? swapped(kept) : kept;
+      const std::size_t lane = PairContacts::width * b + k;
+      for (std::size_t x = 0; x < 3; ++x) block.spring[x][k] = c.spring[Eigen::Index(x)];
+      block.contact_radius[k] = c.contact_radius;
+      pairs.birth_step[lane] = c.birth_step;
+      if (rolling_spring)
+        for (std::size_t x = 0; x < 3; ++x) pairs.rolling[b].torque[x][k] = c.rolling[Eigen::Index(x)];
+      if (keep_ledger) {
+        const LastForces& last = memory.last[std::size_t(known)];
+        pairs.last[lane] = turned ? swapped(last) : last;
+      }
+      pairs.head[b].acts = true;
+      ++remembered;
+    }
+  if (remembered != memory.pairs.size())
+    throw CaseError("the stored state has a contact between grains that are apart");
+  return pairs;
+}
+
+WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, const Memory& memory) {
+  const Setup& setup = in.setup;
+  const double skin = in.skin;
+  const std::size_t n = grains.size(), chunks = chunks_of(n);
+  WallContacts fresh;
+  fresh.skin = skin;
+  fresh.chunk_begin.assign(1, 0);
+  const std::vector<std::uint32_t> begin = first_of_rows(memory.wall_pairs, n);
+  std::size_t remembered = 0;
+  for (std::size_t number = 0; number < chunks; ++number) {
+    for (std::uint32_t w = 0; w < setup.walls.size(); ++w) {
+      const std::uint32_t first = std::uint32_t(fresh.candidate.size());
+      for (std::size_t r = number * chunk_rows; r < std::min((number + 1) * chunk_rows, n); ++r) {
+        const std::uint32_t i = grains.order[r];
+        WallCandidate c{};
+        for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
+          const State::WallPair& kept = memory.wall_pairs[k];
+          if (kept.wall != w) continue;
+          if (c.size == WallCandidate::capacity) throw CaseError("the stored state has a contact with a wall that is not there");
+          WallContact& contact = c.contact[c.size++];
+          contact = WallContact{};
+          contact.touch.feature = kept.feature;
+          contact.touch.normal = kept.normal;
+          contact.touch.distance = kept.distance;
+          contact.touch.curvature = kept.curvature;
+          contact.memory = {kept.spring, kept.contact_radius, kept.birth_step};
+          contact.rolling = kept.rolling;
+          if (setup.keep_ledger) contact.last = memory.wall_last[k];
+          ++remembered;
+        }
+        const double reach = grains.rows[r].radius() + skin;
+        if (c.size == 0 && !near(setup.walls[w], in.poses[w], grains.rows[r].position(), reach)) continue;
+        c.particle = std::uint32_t(r);
+        c.wall = w;
+        c.part_begin = std::uint32_t(fresh.parts.size());
+        candidate_parts(setup.walls[w], in.poses[w], grains.rows[r].position(), reach, fresh.parts);
+        c.part_end = std::uint32_t(fresh.parts.size());
+        if (c.size == 0 && std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
+        c.constants = wall_constants(in.materials(grains.material[r], setup.walls[w].material), {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
+        fresh.candidate.push_back(c);
+      }
+      if (first == fresh.candidate.size()) continue;
+      fresh.chunk.emplace_back();
+      fresh.chunk.back().wall = w;
+      fresh.chunk.back().begin = first;
+      fresh.chunk.back().end = std::uint32_t(fresh.candidate.size());
+    }
+    fresh.chunk_begin.push_back(std::uint32_t(fresh.chunk.size()));
+  }
+  if (remembered != memory.wall_pairs.size())
+    throw CaseError("the stored state has a contact with a wall that is not there");
+  return fresh;
+}
+
+std::vector<std::uint32_t> by_grain(const GrainStore& grains, const WallContacts& walls) {
+  std::vector<std::uint32_t> sorted(walls.candidate.size());
+  std::iota(sorted.begin(), sorted.end(), 0u);
+  const auto key = [&](std::uint32_t q) {
+    return std::tuple(grains.order[walls.candidate[q].particle], walls.candidate[q].wall);
+  };
+  std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  return sorted;
+}
+
+Memory gather(const GrainStore& grains, const PairContacts& pairs, const WallContacts& walls) {
+  Memory all;
+  const std::vector<std::uint32_t>& order = grains.order;
+  const std::size_t n = grains.size();
+  const bool ledger = !pairs.last.empty(), rolling_spring = !pairs.rolling.empty();
+  std::vector<std::uint32_t> begin(n + 1, 0);
+  const auto first = [&](std::size_t lane) { return std::min(order[pairs.first(lane)], order[pairs.second(lane)]); };
+  for (std::size_t lane = 0; lane < pairs.lanes(); ++lane)
+    if (pairs.acts(lane)) ++begin[first(lane) + 1];
+  for (std::size_t i = 0; i < n; ++i) begin[i + 1] += begin[i];
+  std::vector<std::uint32_t> at(begin.begin(), begin.end() - 1), lane_of(begin.back());
+  for (std::size_t lane = 0; lane < pairs.lanes(); ++lane)
+    if (pairs.acts(lane)) lane_of[at[first(lane)]++] = std::uint32_t(lane);
+  const auto other = [&](std::uint32_t lane) { return std::max(order[pairs.first(lane)], order[pairs.second(lane)]); };
+  all.pairs.resize(lane_of.size());
+  if (ledger) all.last.resize(lane_of.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < n; ++i) {
+    std::sort(lane_of.begin() + begin[i], lane_of.begin() + begin[i + 1],
+              [&](std::uint32_t a, std::uint32_t b) { return other(a) < other(b); });
+    for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
+      const std::uint32_t lane = lane_of[k];
+      const PairContacts::Block& block = pairs.block[lane / PairContacts::width];
+      const std::size_t x = lane % PairContacts::width;
+      State::Pair c{order[block.first[x]], order[block.second[x]], {block.spring[0][x], block.spring[1][x], block.spring[2][x]},
+                    pairs.birth_step[lane], block.contact_radius[x]};
+      if (rolling_spring) {
+        const auto& rolling = pairs.rolling[lane / PairContacts::width].torque;
+        c.rolling = {rolling[0][x], rolling[1][x], rolling[2][x]};
+      }
+      const bool turned = c.i > c.j;
+      all.pairs[k] = turned ? swapped(c) : c;
+      if (ledger) all.last[k] = turned ? swapped(pairs.last[lane]) : pairs.last[lane];
+    }
+  }
+  for (const std::uint32_t q : by_grain(grains, walls)) {
+    const WallCandidate& c = walls.candidate[q];
+    for (std::size_t k = 0; k < c.size; ++k) {
+      const WallContact& w = c.contact[k];
+      if (!w.acts()) continue;
+      all.wall_pairs.push_back({order[c.particle], c.wall, w.touch.feature, w.touch.normal, w.memory.spring, w.memory.birth_step,
+                                w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature});
+      all.wall_last.push_back(w.last);
+    }
+  }
+  return all;
+}
+
+}  // namespace dem

@@ -1,0 +1,50 @@
+#include "libdem/simulation/grain_store.hpp"
+
+namespace dem {
+
+GrainStore make_grain_store(Particles particles, const std::vector<Material>& materials) {
+  GrainStore grains;
+  grains.caller = std::move(particles);
+  const Particles& p = grains.caller;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    grains.caller_mass.push_back(materials[p.material[i]].density * sphere_volume(p.radius[i]));
+    grains.caller_inertia.push_back(sphere_inertia(grains.caller_mass[i], p.radius[i]));
+  }
+  return grains;
+}
+
+void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
+  const std::size_t n = grains.size();
+  const Particles& p = grains.caller;
+  grains.order = std::move(order);
+  grains.row_of.resize(n);
+  grains.rows.assign(n + chunks_of(n), phantom());
+  grains.forces.assign(n + chunks_of(n), ForceRow{});
+  grains.mass.resize(n);
+  grains.inertia.resize(n);
+  grains.material.resize(n);
+  grains.id.resize(n);
+  grains.listed.resize(n);
+#pragma omp parallel for schedule(static)
+  for (std::size_t r = 0; r < n; ++r) {
+    const std::uint32_t i = grains.order[r];
+    grains.row_of[i] = std::uint32_t(r);
+    grains.rows[r] = {quad(p.position[i], p.radius[i]), quad(p.velocity[i], 1 / p.radius[i]), quad(p.angular_velocity[i], 0)};
+    grains.mass[r] = grains.caller_mass[i];
+    grains.inertia[r] = grains.caller_inertia[i];
+    grains.material[r] = p.material[i];
+    grains.id[r] = p.id[i];
+  }
+}
+
+void show(GrainStore& grains) {
+  Particles& p = grains.caller;
+  for (std::size_t r = 0; r < grains.size(); ++r) {
+    const std::uint32_t i = grains.order[r];
+    p.position[i] = grains.rows[r].position();
+    p.velocity[i] = grains.rows[r].velocity();
+    p.angular_velocity[i] = grains.rows[r].angular_velocity();
+  }
+}
+
+}  // namespace dem

@@ -1,0 +1,40 @@
+// The grains of a running simulation: in the caller's order, which never changes, and as rows in the order of places in space,
+// which changes whenever the lists are built.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "libdem/contact/pair_blocks.hpp"
+#include "libdem/particles/grain_rows.hpp"
+#include "libdem/particles/particles.hpp"
+
+namespace dem {
+
+struct GrainStore {
+  // In the caller's order. Where the grains are and how they move follows the rows at show().
+  Particles caller;
+  std::vector<double> caller_mass, caller_inertia;  // kg, kg m^2
+
+  // In the order of rows.
+  std::vector<std::uint32_t> order;   // the caller's row
+  std::vector<std::uint32_t> row_of;  // the inverse: row here of the caller's row
+  std::vector<GrainRow> rows;         // and phantoms
+  std::vector<ForceRow> forces;       // and phantoms
+  std::vector<double> mass, inertia;  // kg, kg m^2
+  std::vector<std::uint8_t> material;
+  std::vector<std::uint32_t> id;
+  std::vector<Vec4> listed;           // m, where the grains were when the lists were built; then 0
+
+  std::size_t size() const { return caller_mass.size(); }
+  GrainTable table() const { return {rows, material, mass, inertia}; }
+};
+
+GrainStore make_grain_store(Particles particles, const std::vector<Material>& materials);
+
+// Lays the rows out anew: row r is the caller's row order[r]. Forces are zero, `listed` is left to whoever builds the lists.
+void lay_out(GrainStore& grains, std::vector<std::uint32_t> order);
+
+// Writes positions and velocities of the rows back into the caller's order.
+void show(GrainStore& grains);
+
+}  // namespace dem
