@@ -188,6 +188,10 @@ void read_bed(Section bed, Document& document, dem::Bed& b) {
 void read_run(Section run, dem::Case& c) {
   run.quantity("duration", dimension::time, c.duration);
   run.quantity("step", dimension::time, c.step);
+  std::uint64_t levels = c.levels;
+  run.whole_number("levels", levels, optional);
+  c.levels = std::uint8_t(std::min<std::uint64_t>(levels, 255));
+  run.number("accuracy", c.accuracy, optional);
   double gravity = -c.gravity.z();
   if (run.quantity("gravity", dimension::acceleration, gravity, optional)) c.gravity = {0, 0, -gravity};
   run.finish();

@@ -17,7 +17,7 @@ namespace {
 using Vec3 = dem::Vec3;
 constexpr const char* checkpoint_format = "jamscope-checkpoint";
 constexpr const char* bed_format = "jamscope-bed";
-constexpr std::uint32_t state_version = 3;
+constexpr std::uint32_t state_version = 4;
 
 // TABLES of what a state file stores of each row of a struct: data set, member, unit, meaning. A new member is one row here.
 template <class Row, class Value>
@@ -36,6 +36,7 @@ constexpr std::tuple pair_columns{
     Column{"birth_step", &Pair::birth_step, "1", "step of forming"},
     Column{"contact_radius", &Pair::contact_radius, "m", "contact radius"},
     Column{"rolling", &Pair::rolling, "N m", "elastic rolling torque on the first grain"},
+    Column{"level", &Pair::level, "1", "evaluated every 2^level steps"},
 };
 constexpr std::tuple wall_pair_columns{
     Column{"i", &WallPair::i, "1", "row of the grain"},
@@ -48,9 +49,11 @@ constexpr std::tuple wall_pair_columns{
     Column{"rolling", &WallPair::rolling, "N m", "elastic rolling torque on the grain"},
     Column{"distance", &WallPair::distance, "m", "from the grain's centre to the wall"},
     Column{"curvature", &WallPair::curvature, "1/m", "principal curvatures of the wall, > 0 where it is hollow"},
+    Column{"level", &WallPair::level, "1", "evaluated every 2^level steps"},
 };
 // Of the evaluation before; the ledger needs them.
 constexpr std::tuple last_columns{
+    Column{"duration", &Last::duration, "s", "how long the impulses are"},
     Column{"normal", &Last::normal, "1", "from i to j or to the wall"},
     Column{"arm_i", &Last::arm_i, "m", "from i's centre to the contact"},
     Column{"arm_j", &Last::arm_j, "m", "from j's centre to the contact"},
@@ -129,6 +132,17 @@ void write_state(jam::h5::File& f, const dem::State& s) {
     f.write("/state/layout/listed", layout.listed, "m", "centres when the lists were built, rows of the run");
     f.write("/state/layout/first", layout.first, "1", "row of the run of each lane's first grain");
     f.write("/state/layout/second", layout.second, "1", "row of the run of each lane's second grain");
+    if (!layout.grain_level.empty()) {
+      f.make_group("/state/layout/levels");
+      f.set_attribute("/state/layout/levels", "foresight", layout.foresight);
+      f.write("/state/layout/levels/grain", layout.grain_level, "1", "a grain moves every 2^level steps; rows of the run");
+      f.write("/state/layout/levels/block", layout.block_level, "1", "likewise of each block of lanes; 255: asleep");
+      f.write("/state/layout/levels/block_wake", layout.block_wake, "m", "odometer up to which the block is apart");
+      f.write("/state/layout/levels/wall_grain", layout.wall_grain, "1", "row of the run of a grain near a wall");
+      f.write("/state/layout/levels/wall", layout.wall, "1", "the wall");
+      f.write("/state/layout/levels/wall_level", layout.wall_level, "1", "as for blocks");
+      f.write("/state/layout/levels/wall_wake", layout.wall_wake, "m", "as for blocks");
+    }
   }
   const dem::State::Ledger& l = s.ledger;
   if (l.last_power.empty()) return;
@@ -169,6 +183,16 @@ dem::State read_state(const jam::h5::File& f) {
     layout.listed = f.read<Vec3>("/state/layout/listed");
     layout.first = f.read<std::uint32_t>("/state/layout/first");
     layout.second = f.read<std::uint32_t>("/state/layout/second");
+    if (f.exists("/state/layout/levels")) {
+      layout.foresight = f.attribute<double>("/state/layout/levels", "foresight");
+      layout.grain_level = f.read<std::uint8_t>("/state/layout/levels/grain");
+      layout.block_level = f.read<std::uint8_t>("/state/layout/levels/block");
+      layout.block_wake = f.read<double>("/state/layout/levels/block_wake");
+      layout.wall_grain = f.read<std::uint32_t>("/state/layout/levels/wall_grain");
+      layout.wall = f.read<std::uint32_t>("/state/layout/levels/wall");
+      layout.wall_level = f.read<std::uint8_t>("/state/layout/levels/wall_level");
+      layout.wall_wake = f.read<double>("/state/layout/levels/wall_wake");
+    }
   }
   if (!f.exists("/state/ledger")) return s;
   dem::State::Ledger& l = s.ledger;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/jamscope/analyze.hpp"
+#include "apps/jamscope/bench.hpp"
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/check.hpp"
 #include "apps/jamscope/checkpoint.hpp"
@@ -40,6 +41,7 @@ struct Options {
   AnalyzeOptions analyze;
   InspectOptions inspect;
   MetricsOptions metrics;
+  BenchOptions bench;
   bool all_frames = false;
 };
 
@@ -57,6 +59,20 @@ void add_log_options(CLI::App& command, bool& quiet, LogFormat& format) {
   command.add_option("--log-format", format, "progress for people (text) or for machines (jsonl)")
       ->transform(CLI::CheckedTransformer(log_formats).description(""))
       ->type_name("text|jsonl");
+}
+
+void add_threads(CLI::App& command, int& threads, const char* doc) {
+  command.add_option("-t,--threads", threads, doc)
+      ->check(CLI::Range(1, 4096).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_bed_cache(CLI::App& command, std::string& folder) {
+  folder = default_bed_cache();
+  command.add_option("--bed-cache", folder, "folder in which settled beds are kept for later runs; \"\" keeps none")
+      ->type_name("DIR")
+      ->capture_default_str();
 }
 
 void add_input(CLI::App& command, InputOptions& input) {
@@ -87,17 +103,11 @@ Command add_simulate(CLI::App& app, Options& o) {
   c.add_option("CASE", s.case_path, "case file (TOML)")->required()->type_name("");
   c.add_option("-o,--output", s.output, "folder for all results")->required()->type_name("DIR");
   s.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  c.add_option("-t,--threads", s.threads, "number of threads; the results do not depend on it")
-      ->check(CLI::Range(1, 4096).description(""))
-      ->type_name("N")
-      ->capture_default_str();
+  add_threads(c, s.threads, "number of threads; the results do not depend on it");
   c.add_flag("--resume", s.resume, "continue from the last checkpoint in DIR");
   c.add_option("--until", o.until, "stop at this simulated time, for example \"0.5 s\"")->type_name("TIME");
   add_overrides(c, s.overrides, "--set bed.depth=\"4 mm\"");
-  s.bed_cache = default_bed_cache();
-  c.add_option("--bed-cache", s.bed_cache, "folder in which settled beds are kept for later runs; \"\" keeps none")
-      ->type_name("DIR")
-      ->capture_default_str();
+  add_bed_cache(c, s.bed_cache);
   c.add_flag("--overwrite", s.overwrite, "replace the results of an earlier run in DIR");
   add_log_options(c, s.quiet, s.log_format);
   c.footer("Example:\n  jamscope simulate data/cases/ft4_quick.toml -o quick --threads 2");
@@ -162,13 +172,31 @@ Command add_metrics(CLI::App& app, Options& o) {
   return [&o] { return network_metrics(o.metrics); };
 }
 
+Command add_bench(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("bench", "measure how fast this machine steps a case, and where the time goes");
+  BenchOptions& b = o.bench;
+  c.add_option("CASE", b.case_path, "case file (TOML)")->required()->type_name("");
+  c.add_option("--beads", b.beads, "as deep a bed as holds about so many grains")->type_name("N")->check(CLI::PositiveNumber.description(""));
+  c.add_flag("--uniform", b.uniform, "every contact at every step, whatever the case says");
+  b.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  add_threads(c, b.threads, "number of threads");
+  c.add_option("--seconds", b.seconds, "how long to measure")->type_name("T")->check(CLI::PositiveNumber.description(""))->capture_default_str();
+  c.add_option("--warm-up", b.warm_up, "how long to run before that, s")->type_name("T")->check(CLI::NonNegativeNumber.description(""))->capture_default_str();
+  add_overrides(c, b.overrides, "--set blade.start_height=\"26 mm\"");
+  add_bed_cache(c, b.bed_cache);
+  c.add_flag("--json", b.json, "for machines");
+  add_log_options(c, b.quiet, b.log_format);
+  c.footer("Example:\n  jamscope bench data/cases/ft4_quick.toml --uniform --threads 1");
+  return [&o] { return bench(o.bench); };
+}
+
 // The table of subcommands, in the order of the help text. To add one: a function like those above and a row here; it
 // adds its options to the parser and returns what is to be done.
 using AddCommand = Command (*)(CLI::App&, Options&);
 constexpr AddCommand commands[] = {
     add_check,
     add_simulate,
-    add_analyze,  add_inspect, add_metrics,
+    add_analyze,  add_inspect, add_metrics, add_bench,
 };
 
 int fail(int code, const std::string& message) {

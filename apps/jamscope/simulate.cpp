@@ -14,6 +14,7 @@
 #include "apps/jamscope/checkpoint.hpp"
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/outputs.hpp"
+#include "apps/jamscope/settled_bed.hpp"
 #include "apps/jamscope/sha256.hpp"
 #include "apps/jamscope/simulation_view.hpp"
 #include "libdem/case/check_case.hpp"
@@ -30,66 +31,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-struct Interrupted {};
-
 // How many steps lie between two records; at least one.
 std::uint64_t steps_in(double interval, double step) {
   return std::uint64_t(std::max(1.0, std::round(interval / step)));
-}
-
-std::string bed_text(const dem::BedReport& r) {
-  return fmt::format(
-      "{} grains, solid fraction {:.3f}, coordination {:.2f} ({:.2f} with walls and without {} rattlers), largest overlap "
-      "{:.2g} R, top at {:.2f} mm; at rest: set free for {:.2g} ms, {} grains are unsupported, none moved by more than {:.2g} um "
-      "(free fall: {:.2g} um), kinetic energy {:.2g} J (rest: below {:.2g} J)",
-      r.grains, r.solid_fraction, r.coordination, r.mechanical_coordination, r.rattlers, r.largest_overlap, 1e3 * r.top,
-      1e3 * r.probe_interval, r.unsupported, 1e6 * r.largest_displacement, 1e6 * r.free_fall, r.kinetic_energy, r.rest_scale);
-}
-
-dem::SettledBed settled_bed(const CaseFile& file, const dem::Scene& scene, const std::string& cache,
-                            Console& console) {
-  const dem::Case& c = file.physics;
-  const std::string key = bed_key(scene.setup, c.bed, scene.region);
-  const std::string path = cache.empty() ? "" : (std::filesystem::path(cache) / ("bed-" + key.substr(0, 16) + ".h5")).string();
-  if (!path.empty()) {
-    try {
-      if (auto bed = read_bed(path, key)) {
-        console.note(fmt::format("settled bed from {}: {}", path, bed_text(bed->report)));
-        return *bed;
-      }
-    } catch (const jam::DataError& e) {
-      console.warning(fmt::format("stored bed not used, settling again: {}", e.what()));
-    }
-  }
-  const auto begin = Clock::now();
-  Progress progress;
-  progress.unit = "s";
-  progress.at_most = true;  // stages end when the grains are at rest
-  const auto report = [&](const dem::BedProgress& p) {
-    if (!console.due()) return;
-    progress.stage = "bed: " + p.stage;
-    progress.done = p.time;
-    progress.step = p.steps;
-    progress.total = p.end;
-    console.progress(progress);
-  };
-  dem::SettledBed bed;
-  try {
-    bed = dem::make_bed(scene.setup, c.bed, std::uint8_t(dem::material_index(c, c.bed.material)), scene.region, report,
-                        [] { return stop_requested(); });
-  } catch (const dem::BedInterrupted&) {
-    throw Interrupted{};
-  }
-  console.note(fmt::format("bed settled in {}, {:.2g} grain steps: {}", duration_text(seconds_since(begin)),
-                           bed.report.grain_steps, bed_text(bed.report)));
-  if (!path.empty()) {
-    try {
-      write_bed(path, bed, key);
-    } catch (const jam::DataError& e) {
-      console.warning(fmt::format("the settled bed could not be stored for the next run: {}", e.what()));
-    }
-  }
-  return bed;
 }
 
 // A run from its first to its last frame: libdem steps, every frame goes into the file and into the analysis.
@@ -119,7 +63,7 @@ class Run {
   void resume() {
     Checkpoint checkpoint = read_checkpoint(restart());
     if (checkpoint.case_sha256 != sha_)
-      throw UsageError(restart() + ": belongs to another case, expected case_sha256 " + sha_ + ", got " + checkpoint.case_sha256);
+      throw UsageError(fmt::format("{}: belongs to another case, expected case_sha256 {}, got {}", restart(), sha_, checkpoint.case_sha256));
     writer_.emplace(jam::SnapshotWriter::resume(snapshots(), checkpoint.state.step));
     info_ = writer_->info();
     const jam::SnapshotSource stored = jam::open_jamscope_file(snapshots());
@@ -220,8 +164,8 @@ class Run {
 
   Progress progress(double end) const {
     Progress p;
-    p.stage = "simulate";
-    p.unit = "s";
+    p.stage = std::string("simulate");
+    p.unit = std::string("s");
     p.done = simulation_->time();
     p.total = end;
     p.step = simulation_->step();

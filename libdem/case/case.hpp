@@ -111,6 +111,10 @@ struct Output {
   bool energy_ledger = false;      // book where the energy goes
 };
 
+// Of the levels at which contacts step (libdem/contact/levels.hpp).
+inline constexpr double default_accuracy = 0.15, most_accuracy = 0.5;
+inline constexpr std::uint8_t most_levels = 10;
+
 struct Case {
   std::string name, description;
   std::vector<Material> materials;
@@ -126,7 +130,10 @@ struct Case {
   // m, grains outside of it are lost; not used for a rheometer, whose vessel says.
   Vec3 domain_low = Vec3::Zero(), domain_high = Vec3::Zero();
   double duration = 0;        // s
-  double step = 0;            // s
+  double step = 0;            // s, of level 0
+  // Contacts step at their own rate, up to every 2^levels steps (libdem/contact/levels.hpp); 0: all at every step.
+  std::uint8_t levels = 0;
+  double accuracy = default_accuracy;  // 1, of the levels
   Vec3 gravity{0, 0, -9.81};  // m/s^2
   Output output;
 };

@@ -212,12 +212,14 @@ void check_step(const Case& c, Checker& check) {
                                text(d.mean_in_gap.critical_step) + " s)");
 }
 
-// Results fall on steps, so every interval must be a whole number of them.
+// Results fall on steps at which all contacts are evaluated, so every interval must be a whole number of them.
 void check_interval(const std::string& key, double interval, const Case& c, Checker& check) {
   if (!check.positive(key, interval, " s")) return;
-  const double count = interval / c.step, whole = std::round(count);
+  const double step = c.step * double(1U << c.levels), count = interval / step, whole = std::round(count);
   if (whole < 1 || std::abs(count - whole) > 1e-6 * std::max(1.0, whole)) {
-    check.refuse(key, "must be a whole number of steps of " + text(c.step) + " s, got " + text(interval) +
+    const std::string levels =
+        c.levels == 0 ? "" : " (" + std::to_string(1U << c.levels) + " steps of " + text(c.step) + " s, after which all contacts meet)";
+    check.refuse(key, "must be a whole number of steps of " + text(step) + " s" + levels + ", got " + text(interval) +
                           " s = " + text(count) + " steps");
   } else if (interval > c.duration * (1 + 1e-12)) {
     check.warn(key, "= " + text(interval) + " s is longer than the run (" + text(c.duration) + " s)");
@@ -257,7 +259,13 @@ std::vector<CaseProblem> case_problems(const Case& c, double tip) {
   if (!c.rheometer && !(c.domain_low.array() < c.domain_high.array()).all())
     check.refuse("domain.high", "must lie above domain.low in every direction");
   const bool duration = check.positive("run.duration", c.duration, " s");
-  const bool step = check.positive("run.step", c.step, " s");
+  bool step = check.positive("run.step", c.step, " s");
+  if (c.levels > most_levels) {
+    check.refuse("run.levels", "must be at most " + std::to_string(most_levels) + ", got " + std::to_string(c.levels));
+    step = false;
+  }
+  if (c.levels > 0 && !(c.accuracy > 0 && c.accuracy <= most_accuracy))
+    check.refuse("run.accuracy", "must lie above 0 and be at most " + text(most_accuracy) + ", got " + text(c.accuracy));
   const double gravity = c.gravity.norm();
   if (!(gravity > 0) || !std::isfinite(gravity))
     check.refuse("run.gravity", "must be positive, or the bed does not settle; got " + text(gravity) + " m/s2");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libdem/contact/ledger.hpp"
+#include "libdem/contact/levels.hpp"
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/contact/wall_load.hpp"
 #include "libdem/geometry/walls.hpp"
@@ -18,6 +19,20 @@ struct ContactMemory {
   Vec3 spring = Vec3::Zero();  // m, tangential
   double contact_radius = 0;   // m, of the last evaluation; > 0 exactly where there is a contact
   std::uint64_t birth_step = 0;
+};
+
+// How many contacts were evaluated, blocks of pairs (of eight lanes) and touches of walls; and how many it would have been if all
+// had been at every step.
+struct Evaluations {
+  std::uint64_t blocks = 0, blocks_at_every_step = 0;
+  std::uint64_t touches = 0, touches_at_every_step = 0;
+  Evaluations& operator+=(const Evaluations& more) {
+    blocks += more.blocks;
+    blocks_at_every_step += more.blocks_at_every_step;
+    touches += more.touches;
+    touches_at_every_step += more.touches_at_every_step;
+    return *this;
+  }
 };
 
 struct PairForce {
@@ -40,11 +55,14 @@ struct PairContacts {
   struct alignas(64) RollingSprings {
     std::array<Column, 3> torque{};  // N m, elastic part of the one on the first grain
   };
-  // What decides whether a block has to be looked at.
+  // What decides whether a block has to be looked at. One that does not act and is asleep has no level: it is looked at when
+  // all levels are due and the odometer (ForceInput) may come to `wake`, m, before they are again.
   struct Head {
     bool acts = false;  // a lane is a contact
-    // m: while none is, none can become one before the odometer (ForceInput) has come to here.
+    bool asleep = true;
+    std::uint8_t level = 0;
     double wake = -std::numeric_limits<double>::infinity();
+    LevelScale scale;                 // the smallest of the lanes
     std::uint32_t material_pair = 0;  // index into MaterialTable::pair, of all lanes
     std::uint32_t crossing = 0;       // first row of PairContacts::crossing, of a block whose pairs cross chunks
   };
@@ -65,8 +83,10 @@ struct PairContacts {
   struct Chunk {
     std::uint32_t begin = 0, inner_end = 0, end = 0;
     std::uint32_t incoming_begin = 0, incoming_end = 0;
+    // Of the last evaluation.
     double largest_overlap = 0;  // over the smaller radius
     LedgerSums ledger;
+    Evaluations evaluations;
   };
   std::vector<Chunk> chunk;
 
@@ -94,7 +114,10 @@ struct WallCandidate {
   std::uint32_t particle, wall;
   std::uint32_t part_begin, part_end;  // rows of WallContacts::parts: triangles, glued grains
   PairConstants<double> constants;
-  double wake = -std::numeric_limits<double>::infinity();  // m: while it is not near the wall, as in PairContacts::Head
+  LevelScale scale;
+  double wake = -std::numeric_limits<double>::infinity();  // m; this and the next two as in PairContacts::Head
+  bool asleep = true;
+  std::uint8_t level = 0;
   std::uint32_t size = 0;
   std::array<WallContact, capacity> contact;  // the first `size`, sorted by feature
 };
@@ -105,10 +128,15 @@ struct WallContacts {
   // Candidates are handled in chunks of one wall and one chunk of grains, whose loads are added in order.
   struct Chunk {
     std::uint32_t wall = 0, begin = 0, end = 0;
+    // Of the last evaluation.
     WallLoad load;
-    std::array<WallLoad, facet_labels> load_of_label;  // the part of `load` on the triangles of each label; meshes only
+    // In the mean over the steps until those contacts are evaluated again: times their strides.
+    WallLoad share;
+    std::array<WallLoad, facet_labels> share_of_label;  // the part of `share` on the triangles of each label; meshes only
+    std::array<WallLoad, facet_labels> load_of_label;  // the same of `load`
     double largest_overlap = 0;
     LedgerSums ledger;
+    Evaluations evaluations;
     bool overflow = false;
     std::vector<WallTouch> touches;  // working space
     std::vector<MeshTouch> scratch;

@@ -81,112 +81,139 @@ PairConstants<Pack> all_lanes(const PairConstants<double>& materials) {
   return each_material([&](auto member) { return Pack(materials.*member); });
 }
 
-// One block's parts of (1) in ledger.hpp. `get(k)` gives lane k's LastForces; lanes from `count` on book nothing. `v` are the velocities of i less those of j at the centres (of a wall: zero, its contact point's comes on top),
-// `point_velocity` and `spin_j` those of a wall now.
+// One block's parts in ledger.hpp but for the second half of (1). `get(k)` gives lane k's LastForces; lanes from `count` on book
+// nothing. `centres` are the velocities of i less those of j at the centres (of a wall: zero, its contact point's comes on top),
+// `duration` how long the lanes' impulses are.
 template <class Law, class Get>
 void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c, const ContactForce<Pack>& f,
-          const Mask<Pack>& holds, const Mask<Pack>& touched, const Triple<Pack>& v, bool wall,
-          const Triple<Pack>& wall_velocity, double dt, std::size_t count, Get get, LedgerSums& sums) {
-  // The step before, with the velocities of now.
-  const Triple<Pack> normal = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).normal; });
-  const Pack arm_i = gather([&](std::size_t k) { return get(k).arm_i; });
-  const Pack arm_j = gather([&](std::size_t k) { return get(k).arm_j; });
-  const Pack elastic = gather([&](std::size_t k) { return get(k).elastic; });
-  const Pack damping = gather([&](std::size_t k) { return get(k).damping; });
-  const Triple<Pack> spring = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).tangential_elastic; });
-  const Triple<Pack> viscous = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).tangential_viscous; });
-  const Triple<Pack> rolling_i = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).rolling_i; });
-  const Triple<Pack> rolling_j = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).rolling_j; });
-  const Pack normal_energy = gather([&](std::size_t k) { return get(k).normal_energy; });
-  const Pack tangential_energy = gather([&](std::size_t k) { return get(k).tangential_energy; });
-  const Pack rolling_energy = gather([&](std::size_t k) { return get(k).rolling_energy; });
-  Triple<Pack> u = v + cross(touch.spin_i * arm_i + (wall ? nothing() : touch.spin_j * arm_j), normal);
-  Triple<Pack> spin_j_before = touch.spin_j;
-  if (wall) {
-    u = u - gather_triple([&](std::size_t k) -> const Vec3& { return get(k).wall_velocity; });
-    spin_j_before = gather_triple([&](std::size_t k) -> const Vec3& { return get(k).wall_spin; });
-  }
-  const Pack u_n = dot(u, normal), v_n = dot(touch.velocity, touch.normal), half = 0.5 * dt;
-
-  // This step; nothing where the contact has ended.
-  const Pack elastic_now = only(holds, f.normal.elastic), damping_now = only(holds, f.damping);
-  const Triple<Pack> spring_now = only(holds, f.tangential.elastic), viscous_now = only(holds, f.tangential.viscous);
-  const Triple<Pack> rolling_i_now = only(holds, f.rolling.on_i), rolling_j_now = only(holds, f.rolling.on_j);
+          const Mask<Pack>& holds, const Mask<Pack>& touched, const Triple<Pack>& centres, bool wall,
+          const Triple<Pack>& wall_velocity, const Pack& duration, std::size_t count, Get get, LedgerSums& sums) {
+  const Pack normal_before = gather([&](std::size_t k) { return get(k).normal_energy; });
+  const Pack tangential_before = gather([&](std::size_t k) { return get(k).tangential_energy; });
+  const Pack rolling_before = gather([&](std::size_t k) { return get(k).rolling_energy; });
+  // Nothing where the contact has ended.
   const Pack normal_now = only(holds, f.normal.energy), tangential_now = only(holds, f.tangential.energy),
              rolling_now = only(holds, f.rolling.energy);
-
-  const Pack taken_normal = half * (elastic * u_n + elastic_now * v_n);
-  const Pack taken_damping = half * (damping * u_n + damping_now * v_n);
-  const Pack taken_spring = -half * (dot(spring, u) + dot(spring_now, touch.velocity));
-  const Pack taken_viscous = -half * (dot(viscous, u) + dot(viscous_now, touch.velocity));
-  const Pack taken_rolling = -half * (dot(rolling_i, touch.spin_i) + dot(rolling_j, spin_j_before) +
-                                      dot(rolling_i_now, touch.spin_i) + dot(rolling_j_now, touch.spin_j));
-
   const auto [form, broken] = with_part<NormalLaws>(
       law.normal, [&](auto part) { return std::pair<Pack, Pack>(part.form_energy(c), part.break_energy(c)); });
   const Mask<Pack> formed = holds && !touched, ended = touched && !holds;
-  const Pack springs_lost = only(ended, tangential_energy + rolling_energy);
+  const Pack springs_lost = only(ended, tangential_before + rolling_before);
   const Pack detachment = only(ended, broken) - only(formed, form) + springs_lost;
   const Pack stiffness = only(holds, f.tangential.stiffness_work), slip = only(holds, f.tangential.slip_work);
-  const Pack rolled = taken_rolling - (rolling_now - rolling_energy) - only(ended, rolling_energy);
-  const Pack stored = normal_now - normal_energy + tangential_now - tangential_energy + rolling_now - rolling_energy;
-  const Pack time_stepping = taken_normal + taken_damping + taken_spring + taken_viscous + taken_rolling -
-                             (stored + taken_damping + taken_viscous + slip + rolled + detachment - stiffness);
-  // One contact after the other: how contacts fall into blocks depends on the list, their order does not.
-  for (std::size_t k = 0; k < count; ++k)
-    sums += {taken_damping[k], taken_viscous[k], slip[k],           rolled[k],
-             detachment[k],    stiffness[k],     time_stepping[k]};
+  const Pack rolled = rolling_before - rolling_now - only(ended, rolling_before);
+  const Pack stored = normal_now - normal_before + tangential_now - tangential_before + rolling_now - rolling_before;
+  const Pack time_stepping = stiffness - stored - slip - rolled - detachment;
 
-  const Pack surface_now = f.normal.surface_energy;
+  // One contact after the other: how contacts fall into blocks depends on the list, their order does not.
   for (std::size_t k = 0; k < count; ++k) {
+    sums += {0, 0, slip[k], rolled[k], detachment[k], stiffness[k], time_stepping[k]};
     LastForces& last = get(k);
-    if (!holds[k]) {
-      last = LastForces{};
-      continue;
-    }
+    last = LastForces{};
+    if (!holds[k]) continue;
+    last.duration = duration[k];
     last.normal = lane_of(touch.normal, k);
     last.arm_i = touch.arm_i[k];
     last.arm_j = touch.arm_j[k];
-    last.elastic = elastic_now[k];
-    last.damping = damping_now[k];
-    last.tangential_elastic = lane_of(spring_now, k);
-    last.tangential_viscous = lane_of(viscous_now, k);
-    last.rolling_i = lane_of(rolling_i_now, k);
-    last.rolling_j = lane_of(rolling_j_now, k);
+    last.elastic = f.normal.elastic[k];
+    last.damping = f.damping[k];
+    last.tangential_elastic = lane_of(f.tangential.elastic, k);
+    last.tangential_viscous = lane_of(f.tangential.viscous, k);
+    last.rolling_i = lane_of(f.rolling.on_i, k);
+    last.rolling_j = lane_of(f.rolling.on_j, k);
     if (wall) {
       last.wall_velocity = lane_of(wall_velocity, k);
       last.wall_spin = lane_of(touch.spin_j, k);
     }
     last.normal_energy = normal_now[k];
-    last.surface_energy = surface_now[k];
+    last.surface_energy = f.normal.surface_energy[k];
     last.tangential_energy = tangential_now[k];
     last.rolling_energy = rolling_now[k];
+    sums += half_of_work(last, lane_of(centres, k), lane_of(touch.spin_i, k), lane_of(touch.spin_j, k));
   }
 }
 
-// m, the smallest gap that the lanes of a block still have to close before a contact forms; < 0 where one forms now.
+bool levels_in_use(const ForceInput& in) { return in.highest > 0; }
+bool all_due(const ForceInput& in) { return in.due == in.highest; }
+
+// s, by how much springs advance in a contact of this level.
+double advance_of(const ForceInput& in, std::uint8_t level) { return in.look ? 0 : in.step_length * stride(level); }
+
+// In steps, from the middle of the time since the last evaluation to the middle of the time until the next: what a force's
+// impulse is long.
+double impulse_steps(std::uint8_t before, std::uint8_t now) { return 0.5 * (stride(before) + stride(now)); }
+
+// A contact meets, at the latest after so many levels more, whatever moves the grains that it is between; a pair that is apart
+// has only the motion of the two to foresee its impact by.
+constexpr std::uint8_t levels_above_contacts = 2, levels_above_apart = 1;
+
+std::uint8_t finest_grain(const ForceInput& in, const Block& block) {
+  std::uint8_t finest = in.highest;
+  for (std::size_t k = 0; k < PairContacts::width; ++k) {
+    finest = std::min(finest, in.level[block.first[k]]);
+    if (block.second[k] < in.level.size()) finest = std::min(finest, in.level[block.second[k]]);
+  }
+  return finest;
+}
+
+void choose_level(const ForceInput& in, const Block& block, PairContacts::Head& head, double radius, double speed,
+                  std::uint8_t above) {
+  const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, finest_grain(in, block) + above));
+  head.level = next_level(head.level, in.due, cap, head.scale, radius, speed);
+}
+
+// The second grains of blocks that cross to other chunks hear of it in add_crossing().
+void ask(const ForceInput& in, const Block& block, std::uint8_t level, bool crosses, const ForceOutput& out) {
+  const auto ask_one = [&](std::uint32_t i) { out.asked[i] = std::min(out.asked[i], level); };
+  for (std::size_t k = 0; k < PairContacts::width; ++k) ask_one(block.first[k]);
+  if (crosses) return;
+  for (std::size_t k = 0; k < PairContacts::width; ++k)
+    if (block.second[k] < in.level.size()) ask_one(block.second[k]);
+}
+
+struct Approach {
+  double gap;    // m, the smallest that a lane still has to close before a contact forms; < 0 where one forms now
+  double speed;  // m/s, the largest at which bodies that may touch soon near each other or part; 0 unless levels are in use
+};
 template <class Law>
-JAMSCOPE_FLATTEN double smallest_gap(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number) {
+JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number) {
   const Block& block = pairs.block[number];
   PairConstants<Pack> c = all_lanes(in.materials.pair[pairs.head[number].material_pair]);
-  double least = std::numeric_limits<double>::infinity();
+  Approach approach{std::numeric_limits<double>::infinity(), 0};
   for (std::size_t lane = 0; lane < PairContacts::width; lane += pack_width) {
-    const auto i = load_quads([&](std::size_t k) { return in.grains[block.first[lane + k]].place.data(); });
-    const auto j = load_quads([&](std::size_t k) { return in.grains[block.second[lane + k]].place.data(); });
-    const Triple<Pack> branch{j[0] - i[0], j[1] - i[1], j[2] - i[2]};
+    const auto i = [&](std::size_t k) -> const GrainRow& { return in.grains[block.first[lane + k]]; };
+    const auto j = [&](std::size_t k) -> const GrainRow& { return in.grains[block.second[lane + k]]; };
+    const auto place_i = load_quads([&](std::size_t k) { return i(k).place.data(); });
+    const auto place_j = load_quads([&](std::size_t k) { return j(k).place.data(); });
+    const Triple<Pack> branch{place_j[0] - place_i[0], place_j[1] - place_i[1], place_j[2] - place_i[2]};
     c.effective_radius = load(block.effective_radius, lane);
     c.adhesion_length = load(block.adhesion_length, lane);
     const Pack form = with_part<NormalLaws>(law.normal, [&](auto part) -> Pack { return part.form_overlap(c); });
-    least = std::min(least, double(std::experimental::hmin(square_root(dot(branch, branch)) - i[3] - j[3] + form)));
+    const Pack distance = square_root(dot(branch, branch)), gap = distance - place_i[3] - place_j[3] + form;
+    approach.gap = std::min(approach.gap, double(std::experimental::hmin(gap)));
+    if (!levels_in_use(in)) continue;
+    const auto motion_i = load_quads([&](std::size_t k) { return i(k).motion.data(); });
+    const auto motion_j = load_quads([&](std::size_t k) { return j(k).motion.data(); });
+    const Triple<Pack> apart{motion_j[0] - motion_i[0], motion_j[1] - motion_i[1], motion_j[2] - motion_i[2]};
+    const Pack speed = only(gap < Pack(in.foresight), absolute(dot(apart, branch) / distance));
+    approach.speed = std::max(approach.speed, double(std::experimental::hmax(speed)));
   }
-  return least;
+  return approach;
 }
 
-// Lanes of a block, as many as a pack holds: load, law, add to the grains. Lanes without a contact, phantoms among them, add
-// nothing. Says whether one has a contact.
-template <class Law, bool Keep>
-JAMSCOPE_FLATTEN bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::size_t lane, bool crosses,
-                    std::vector<ForceRow>& forces, Pack& largest_overlap, LedgerSums& sums) {
+// What the law says of as many lanes of a block as a pack holds. Lanes without a contact, phantoms among them, have no forces.
+struct LaneForces {
+  Touch<Pack> touch;
+  PairConstants<Pack> constants;
+  ContactForce<Pack> f;
+  Mask<Pack> hold, touched;
+  Triple<Pack> centres;  // m/s, of i less j
+  Triple<Pack> tangential, force, torque_i, torque_j;
+  Pack pressed;  // N
+};
+
+template <class Law>
+JAMSCOPE_FLATTEN inline LaneForces evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number,
+                                                  std::size_t lane, double advance, Pack& largest_overlap) {
   Block& block = pairs.block[number];
   const auto i = [&](std::size_t k) -> const GrainRow& { return in.grains[block.first[lane + k]]; };
   const auto j = [&](std::size_t k) -> const GrainRow& { return in.grains[block.second[lane + k]]; };
@@ -197,7 +224,9 @@ JAMSCOPE_FLATTEN bool evaluate_lanes(const Law& law, const ForceInput& in, PairC
   const auto spin_i = load_quads([&](std::size_t k) { return i(k).spin.data(); });
   const auto spin_j = load_quads([&](std::size_t k) { return j(k).spin.data(); });
 
-  PairConstants<Pack> c = all_lanes(in.materials.pair[pairs.head[number].material_pair]);
+  LaneForces r;
+  PairConstants<Pack>& c = r.constants;
+  c = all_lanes(in.materials.pair[pairs.head[number].material_pair]);
   c.effective_radius = load(block.effective_radius, lane);
   c.effective_mass = load(block.effective_mass, lane);
   c.effective_inertia = load(block.effective_inertia, lane);
@@ -205,7 +234,7 @@ JAMSCOPE_FLATTEN bool evaluate_lanes(const Law& law, const ForceInput& in, PairC
 
   const Triple<Pack> branch{x_j - x_i, y_j - y_i, z_j - z_i};
   const Pack distance = square_root(dot(branch, branch));
-  Touch<Pack> touch;
+  Touch<Pack>& touch = r.touch;
   touch.spin_i = {spin_i[0], spin_i[1], spin_i[2]};
   touch.spin_j = {spin_j[0], spin_j[1], spin_j[2]};
   // The contact point divides the branch in the ratio of the radii: R_i/(R_i + R_j) = R*/R_j.
@@ -214,97 +243,146 @@ JAMSCOPE_FLATTEN bool evaluate_lanes(const Law& law, const ForceInput& in, PairC
   touch.arm_j = share * inverse_i;
   touch.overlap = radius_i + radius_j - distance;
   touch.normal = branch * Pack(1.0 / distance);
-  const Triple<Pack> centres{vx_i - vx_j, vy_i - vy_j, vz_i - vz_j};
-  touch.velocity = centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
+  r.centres = {vx_i - vx_j, vy_i - vy_j, vz_i - vz_j};
+  touch.velocity = r.centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
 
   Springs<Pack> springs{load(block.spring, lane), nothing(), load(block.contact_radius, lane)};
   const bool rolling_spring = !pairs.rolling.empty();
   if (rolling_spring) springs.rolling = load(pairs.rolling[number].torque, lane);
-  const Mask<Pack> touched = springs.contact_radius > Pack(0.0);
-  const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
-  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Pack(in.dt));
+  r.touched = springs.contact_radius > Pack(0.0);
+  r.hold = holds(law, touch.overlap, r.touched, c);
+  r.f = evaluate(law, touch, c, springs, Pack(advance));
 
-  store(only(hold, springs.tangential), block.spring, lane);
-  store(only(hold, springs.contact_radius), block.contact_radius, lane);
-  if (rolling_spring) store(only(hold, springs.rolling), pairs.rolling[number].torque, lane);
-  const std::size_t first_lane = PairContacts::width * number + lane;
-  const Mask<Pack> formed = hold && !touched;
+  store(only(r.hold, springs.tangential), block.spring, lane);
+  store(only(r.hold, springs.contact_radius), block.contact_radius, lane);
+  if (rolling_spring) store(only(r.hold, springs.rolling), pairs.rolling[number].torque, lane);
+  const Mask<Pack> formed = r.hold && !r.touched;
   if (any_of(formed))
     for (std::size_t k = 0; k < pack_width; ++k)
-      if (formed[k]) pairs.birth_step[first_lane + k] = in.step;
+      if (formed[k]) pairs.birth_step[PairContacts::width * number + lane + k] = in.step;
 
-  const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
-  const Pack pushed = f.normal.elastic + f.damping;
-  const Triple<Pack> force = only(hold, tangential - touch.normal * pushed);
-  const Triple<Pack> twist = cross(touch.normal, tangential);
-  const Triple<Pack> torque_i = only(hold, twist * touch.arm_i + f.rolling.on_i);
-  const Triple<Pack> torque_j = only(hold, twist * touch.arm_j + f.rolling.on_j);
-  const Pack pressed = only(hold, larger(pushed, Pack(0.0))), zero(0.0);
-  largest_overlap = larger(largest_overlap, only(hold, touch.overlap * larger(inverse_i, inverse_j)));
-  for_each_row({force.x, force.y, force.z, pressed, torque_i.x, torque_i.y, torque_i.z, zero},
+  r.tangential = r.f.tangential.elastic + r.f.tangential.viscous;
+  const Pack pushed = r.f.normal.elastic + r.f.damping;
+  r.force = only(r.hold, r.tangential - touch.normal * pushed);
+  const Triple<Pack> twist = cross(touch.normal, r.tangential);
+  r.torque_i = only(r.hold, twist * touch.arm_i + r.f.rolling.on_i);
+  r.torque_j = only(r.hold, twist * touch.arm_j + r.f.rolling.on_j);
+  r.pressed = only(r.hold, larger(pushed, Pack(0.0)));
+  largest_overlap = larger(largest_overlap, only(r.hold, touch.overlap * larger(inverse_i, inverse_j)));
+  return r;
+}
+
+// Adds the impulses, in steps, to the grains.
+inline void scatter(const LaneForces& r, PairContacts& pairs, std::size_t number, std::size_t lane, double steps, bool crosses,
+                    std::vector<ForceRow>& forces) {
+  const Block& block = pairs.block[number];
+  const Pack weight = steps, zero = 0.0;
+  const Triple<Pack> force = r.force * weight, torque_i = r.torque_i * weight, torque_j = r.torque_j * weight;
+  for_each_row({force.x, force.y, force.z, r.pressed, torque_i.x, torque_i.y, torque_i.z, zero},
                [&](std::size_t k, const auto& row) { add_row(forces[block.first[lane + k]], row); });
-  const std::array<Pack, 8> opposite{-force.x, -force.y, -force.z, pressed, torque_j.x, torque_j.y, torque_j.z, zero};
+  const std::array<Pack, 8> opposite{-force.x, -force.y, -force.z, r.pressed, torque_j.x, torque_j.y, torque_j.z, zero};
   if (crosses) {
-    ForceRow* const out = &pairs.crossing[pairs.head[number].crossing + lane];
-    for_each_row(opposite, [&](std::size_t k, const auto& row) { store_row(out[k], row); });
+    ForceRow* const to = &pairs.crossing[pairs.head[number].crossing + lane];
+    for_each_row(opposite, [&](std::size_t k, const auto& row) { store_row(to[k], row); });
   } else {
     for_each_row(opposite, [&](std::size_t k, const auto& row) { add_row(forces[block.second[lane + k]], row); });
   }
+}
 
-  if constexpr (Keep)
-    book(law, touch, c, f, hold, touched, centres, false, nothing(), in.dt, pack_width,
-         [&](std::size_t k) -> LastForces& { return pairs.last[first_lane + k]; }, sums);
-  if (in.record)
-    for (std::size_t k = 0; k < pack_width; ++k)
-      if (hold[k])
-        pairs.result[first_lane + k] = {lane_of(tangential, k), f.normal.elastic[k], f.damping[k], f.tangential.sliding[k]};
-  return any_of(hold);
+// A block: law, level, impulses. Says by its head whether one of its lanes is a contact. One that has just woken acts from now on,
+// not since it was looked at last.
+template <class Law, bool Keep>
+JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, bool woken,
+                                     bool crosses, const ForceOutput& out, Pack& largest_overlap, LedgerSums& sums) {
+  constexpr std::size_t packs = PairContacts::width / pack_width;
+  PairContacts::Head& head = pairs.head[number];
+  std::array<LaneForces, packs> result;
+  head.acts = false;
+  for (std::size_t p = 0; p < packs; ++p) {
+    result[p] = evaluate_lanes(law, in, pairs, number, p * pack_width, advance_of(in, woken ? 0 : head.level), largest_overlap);
+    head.acts |= any_of(result[p].hold);
+  }
+  double steps = 1;
+  if (levels_in_use(in)) {
+    double radius = 0, speed = 0;
+    for (const LaneForces& r : result) {
+      radius = std::max(radius, double(std::experimental::hmax(only(r.hold, r.f.normal.contact_radius))));
+      const Mask<Pack> soon = r.hold || (r.touch.overlap > Pack(-in.foresight));
+      speed = std::max(speed, double(std::experimental::hmax(only(soon, absolute(dot(r.touch.velocity, r.touch.normal))))));
+    }
+    const std::uint8_t before = head.level;
+    choose_level(in, pairs.block[number], head, radius, speed, levels_above_contacts);
+    ask(in, pairs.block[number], head.level, crosses, out);
+    steps = impulse_steps(woken ? head.level : before, head.level);
+  }
+  for (std::size_t p = 0; p < packs; ++p) {
+    const LaneForces& r = result[p];
+    scatter(r, pairs, number, p * pack_width, steps, crosses, out.forces);
+    const std::size_t first_lane = PairContacts::width * number + p * pack_width;
+    if constexpr (Keep)
+      book(law, r.touch, r.constants, r.f, r.hold, r.touched, r.centres, false, nothing(), Pack(steps * in.step_length), pack_width,
+           [&](std::size_t k) -> LastForces& { return pairs.last[first_lane + k]; }, sums);
+    if (in.record)
+      for (std::size_t k = 0; k < pack_width; ++k)
+        if (r.hold[k])
+          pairs.result[first_lane + k] = {lane_of(r.tangential, k), r.f.normal.elastic[k], r.f.damping[k],
+                                          r.f.tangential.sliding[k]};
+  }
 }
 
 template <class Law, bool Keep>
-void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number,
-                         std::vector<ForceRow>& forces) {
+void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, const ForceOutput& out) {
   PairContacts::Chunk& chunk = pairs.chunk[number];
   Pack largest_overlap = 0.0;
   LedgerSums sums;
+  Evaluations evaluations;
   for (std::uint32_t b = chunk.begin; b < chunk.end; ++b) {
     PairContacts::Head& head = pairs.head[b];
+    const bool crosses = b >= chunk.inner_end, woken = !head.acts && head.asleep;
     if (!head.acts) {
-      if (in.odometer < head.wake) continue;
-      const double gap = smallest_gap(law, in, pairs, b);
-      if (gap >= 0) {
-        head.wake = in.odometer + cautious * gap;
+      if (woken) {
+        if (!all_due(in) || in.odometer + in.foresight < head.wake) continue;
+        head.level = in.highest;
+      } else if (head.level > in.due) {
         continue;
       }
+      const Approach approach = look_at(law, in, pairs, b);
+      head.asleep = approach.gap > in.foresight;
+      if (approach.gap >= 0) {
+        head.wake = in.odometer + cautious * approach.gap;
+        if (!head.asleep && levels_in_use(in)) {
+          choose_level(in, pairs.block[b], head, 0, approach.speed, levels_above_apart);
+          ask(in, pairs.block[b], head.level, crosses, out);
+        }
+        continue;
+      }
+    } else if (head.level > in.due) {
+      continue;
     }
-    head.acts = false;
-    for (std::size_t lane = 0; lane < PairContacts::width; lane += pack_width)
-      head.acts |= evaluate_lanes<Law, Keep>(law, in, pairs, b, lane, b >= chunk.inner_end, forces, largest_overlap, sums);
+    evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums);
     head.wake = in.odometer;
+    evaluations += {1, std::uint64_t{1} << head.level, 0, 0};
   }
   chunk.largest_overlap = std::experimental::hmax(largest_overlap);
   chunk.ledger = sums;
+  chunk.evaluations = evaluations;
 }
 
 // A contact that its wall no longer has: it broke, or its feature gave way to another while it was loaded and what it stored
-// is lost.
+// is lost. `advance`, s, is the time since its last evaluation.
 template <class Law>
-void book_end(const Law& law, const WallContact& contact, const PairConstants<double>& c, const GrainRow& grain, double dt,
+void book_end(const Law& law, const WallContact& contact, const PairConstants<double>& c, const GrainRow& grain, double advance,
               LedgerSums& sums) {
   const LastForces& last = contact.last;
-  const Vec3 spin = grain.angular_velocity();
-  const Vec3 u = grain.velocity() + (last.arm_i * spin).cross(last.normal) - last.wall_velocity;
-  const Vec3 force = last.tangential_elastic + last.tangential_viscous - (last.elastic + last.damping) * last.normal;
-  const double taken =
-      -0.5 * dt * (force.dot(u) + last.rolling_i.dot(spin) + last.rolling_j.dot(last.wall_spin));
-  const double expected_overlap = grain.radius() - contact.touch.distance + dt * u.dot(last.normal);
+  const Vec3 u = grain.velocity() + (last.arm_i * grain.angular_velocity()).cross(last.normal) - last.wall_velocity;
+  const double expected_overlap = grain.radius() - contact.touch.distance + advance * u.dot(last.normal);
   const auto [break_overlap, break_energy] = with_part<NormalLaws>(
       law.normal, [&](auto part) { return std::pair(part.break_overlap(c), part.break_energy(c)); });
   const bool broke = expected_overlap < break_overlap;
   const double detachment =
       (broke ? break_energy : last.normal_energy) + last.tangential_energy + last.rolling_energy;
   sums.detachment += detachment;
-  sums.time_stepping += taken + last.energy().total() - detachment;
+  sums.time_stepping += last.energy().total() - detachment;
 }
 
 void take_over(WallContact& contact, const WallContact& from) {
@@ -374,11 +452,13 @@ double last_overlap(const Law& law, const ForceInput& in, const WallCandidate& c
 struct WallSlot {
   WallCandidate* candidate;
   WallContact* contact;
+  double advance;  // s
+  double steps;    // of the impulse
 };
 
 template <class Law, bool Keep>
 JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, const std::array<WallSlot, pack_width>& slot, std::size_t count,
-                         WallContacts::Chunk& chunk, std::vector<ForceRow>& forces, LedgerSums& sums) {
+                         WallContacts::Chunk& chunk, const ForceOutput& out, LedgerSums& sums) {
   const WallPose& pose = in.poses[chunk.wall];
   const auto grain = [&](std::size_t k) -> const GrainRow& { return in.grains[slot[k].candidate->particle]; };
 
@@ -416,14 +496,15 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
                         gather([&](std::size_t k) { return slot[k].contact->memory.contact_radius; })};
   const Mask<Pack> touched = springs.contact_radius > Pack(0.0);
   const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
-  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Pack(in.dt));
+  const ContactForce<Pack> f = evaluate(law, touch, c, springs, gather([&](std::size_t k) { return slot[k].advance; }));
   const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
   const Pack pushed = f.normal.elastic + f.damping;
   const Triple<Pack> force = tangential - touch.normal * pushed;
   const Triple<Pack> torque = cross(arm, tangential) + f.rolling.on_i;
   const Triple<Pack> torque_on_wall = f.rolling.on_j - cross(lever, force);
   if constexpr (Keep)
-    book(law, touch, c, f, hold, touched, velocity, true, wall_velocity, in.dt, count,
+    book(law, touch, c, f, hold, touched, velocity, true, wall_velocity,
+         gather([&](std::size_t k) { return slot[k].steps * in.step_length; }), count,
          [&](std::size_t k) -> LastForces& { return slot[k].contact->last; }, sums);
 
   for (std::size_t k = 0; k < count; ++k) {
@@ -441,36 +522,63 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
     contact.elastic = f.normal.elastic[k];
     contact.damping = f.damping[k];
     contact.sliding = f.tangential.sliding[k];
+    const double steps = slot[k].steps;
     const Vec3 on_grain = lane_of(force, k);
-    ForceRow& row = forces[slot[k].candidate->particle];
-    row.force += quad(on_grain, std::max(double(pushed[k]), 0.0));
-    row.torque += quad(lane_of(torque, k), 0);
+    ForceRow& row = out.forces[slot[k].candidate->particle];
+    row.force += quad(steps * on_grain, std::max(double(pushed[k]), 0.0));
+    row.torque += quad(steps * lane_of(torque, k), 0);
     const WallLoad load{-on_grain, lane_of(torque_on_wall, k)};
+    const WallLoad share{steps * load.force, steps * load.torque};
     chunk.load += load;
-    if (const auto* mesh = std::get_if<MeshWall>(&in.walls[chunk.wall].shape))
-      chunk.load_of_label[std::size_t(mesh->finder->mesh().labels[contact.touch.facet])] += load;
+    chunk.share += share;
+    if (const auto* mesh = std::get_if<MeshWall>(&in.walls[chunk.wall].shape)) {
+      const auto label = std::size_t(mesh->finder->mesh().labels[contact.touch.facet]);
+      chunk.load_of_label[label] += load;
+      chunk.share_of_label[label] += share;
+    }
     chunk.largest_overlap = std::max(chunk.largest_overlap, touch.overlap[k] * inverse_radius[k]);
   }
 }
 
+// m/s, at which the grain's centre nears the wall where they touch, or leaves it.
+double normal_speed(const GrainRow& grain, const WallPose& pose, const WallTouch& touch) {
+  const Vec3 lever = grain.position() + grain.radius() * touch.normal - pose.position;
+  return std::abs((grain.velocity() - pose.velocity - pose.angular_velocity.cross(lever)).dot(touch.normal));
+}
+
+void choose_level(const ForceInput& in, WallCandidate& candidate, double radius, double speed, std::uint8_t above,
+                  const ForceOutput& out) {
+  const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, in.level[candidate.particle] + above));
+  candidate.level = next_level(candidate.level, in.due, cap, candidate.scale, radius, speed);
+  std::uint8_t& asked = out.asked[candidate.particle];
+  asked = std::min(asked, candidate.level);
+}
+
 template <class Law, bool Keep>
 void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& walls, WallContacts::Chunk& chunk,
-                         std::vector<ForceRow>& forces) {
+                         const ForceOutput& out) {
   std::vector<WallTouch>& touches = chunk.touches;
   const Wall& wall = in.walls[chunk.wall];
   const WallPose& pose = in.poses[chunk.wall];
   std::array<WallSlot, pack_width> slot{};
   std::size_t count = 0;
   LedgerSums sums;
-  chunk.load = WallLoad{};
+  chunk.load = chunk.share = WallLoad{};
   chunk.load_of_label.fill(WallLoad{});
+  chunk.share_of_label.fill(WallLoad{});
   chunk.largest_overlap = 0;
   chunk.ledger = LedgerSums{};
-  const auto block = [&] { evaluate_wall_block<Law, Keep>(law, in, slot, count, chunk, forces, sums); };
+  chunk.evaluations = Evaluations{};
+  const auto block = [&] { evaluate_wall_block<Law, Keep>(law, in, slot, count, chunk, out, sums); };
   for (std::uint32_t q = chunk.begin; q < chunk.end; ++q) {
     WallCandidate& candidate = walls.candidate[q];
-    const bool away = candidate.size == 0;
-    if (away && in.odometer < candidate.wake) continue;
+    const bool away = candidate.size == 0, woken = away && candidate.asleep;
+    if (woken) {
+      if (!all_due(in) || in.odometer + in.foresight < candidate.wake) continue;
+      candidate.level = in.highest;
+    } else if (candidate.level > in.due) {
+      continue;
+    }
     const GrainRow& grain = in.grains[candidate.particle];
     // Where nothing is near, look as far as the list does, to know for how long.
     const double reach = grain.radius() - last_overlap(law, in, candidate);
@@ -479,10 +587,15 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
             std::span(walls.parts).subspan(candidate.part_begin, candidate.part_end - candidate.part_begin),
             touches, chunk.scratch);
     if (away) {
-      double gap = sight - reach;
-      for (const WallTouch& touch : touches) gap = std::min(gap, touch.distance - reach);
+      double gap = sight - reach, speed = 0;
+      for (const WallTouch& touch : touches) {
+        gap = std::min(gap, touch.distance - reach);
+        speed = std::max(speed, normal_speed(grain, pose, touch));
+      }
+      candidate.asleep = gap > in.foresight;
       if (gap > 0) {
         candidate.wake = in.odometer + cautious * gap;
+        if (!candidate.asleep && levels_in_use(in)) choose_level(in, candidate, 0, speed, levels_above_apart, out);
         continue;
       }
       std::erase_if(touches, [&](const WallTouch& touch) { return touch.distance > reach; });
@@ -491,12 +604,27 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       chunk.overflow = true;
       touches.resize(WallCandidate::capacity);
     }
+    const std::uint8_t before = candidate.level;
     inherit(candidate, touches, [&](const WallContact& ended) {
-      if constexpr (Keep) book_end(law, ended, constants_of(in, candidate, ended), grain, in.dt, chunk.ledger);
+      if constexpr (Keep)
+        book_end(law, ended, constants_of(in, candidate, ended), grain, advance_of(in, before), chunk.ledger);
     });
     if (candidate.size == 0) candidate.wake = in.odometer;
+    double steps = 1;
+    if (levels_in_use(in)) {
+      double radius = 0, speed = 0;
+      for (std::size_t t = 0; t < candidate.size; ++t) {
+        const WallContact& contact = candidate.contact[t];
+        const double overlap = std::max(grain.radius() - contact.touch.distance, 0.0);
+        radius = std::max({radius, contact.memory.contact_radius, std::sqrt(candidate.constants.effective_radius * overlap)});
+        speed = std::max(speed, normal_speed(grain, pose, contact.touch));
+      }
+      choose_level(in, candidate, radius, speed, levels_above_contacts, out);
+      steps = impulse_steps(woken ? candidate.level : before, candidate.level);
+    }
+    chunk.evaluations += {0, 0, candidate.size, std::uint64_t{candidate.size} << candidate.level};
     for (std::size_t t = 0; t < candidate.size; ++t) {
-      slot[count++] = {&candidate, &candidate.contact[t]};
+      slot[count++] = {&candidate, &candidate.contact[t], advance_of(in, woken ? 0 : before), steps};
       if (count == pack_width) {
         block();
         count = 0;
@@ -510,51 +638,82 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
   if constexpr (Keep) chunk.ledger += sums;
 }
 
-// All contacts of one chunk of grains, which nobody else adds forces to meanwhile.
+// All contacts of one chunk of grains that are due; nobody else adds forces to these grains meanwhile.
 template <class Law, bool Keep>
 void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, std::size_t number,
-                    std::vector<ForceRow>& forces) {
-  const std::size_t chunks = pairs.chunk.size(), grains = in.grains.size() - chunks;
-  const std::size_t begin = number * chunk_rows, end = std::min(begin + chunk_rows, grains);
-  std::fill(forces.begin() + std::ptrdiff_t(begin), forces.begin() + std::ptrdiff_t(end), ForceRow{});
-  forces[grains + number] = ForceRow{};
-  evaluate_pair_chunk<Law, Keep>(law, in, pairs, number, forces);
+                    const ForceOutput& out) {
+  const std::size_t grains = in.level.size(), begin = number * chunk_rows, end = std::min(begin + chunk_rows, grains);
+  for (std::size_t i = begin; i < end; ++i)
+    if (in.level[i] <= in.due) {
+      out.forces[i] = ForceRow{};
+      out.asked[i] = in.highest;
+    }
+  out.forces[grains + number] = ForceRow{};
+  evaluate_pair_chunk<Law, Keep>(law, in, pairs, number, out);
   for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w)
-    evaluate_wall_chunk<Law, Keep>(law, in, walls, walls.chunk[w], forces);
+    evaluate_wall_chunk<Law, Keep>(law, in, walls, walls.chunk[w], out);
 }
 
 template <class Law, bool Keep>
-double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, std::vector<ForceRow>& forces) {
-#pragma omp parallel for schedule(dynamic, 1) if (pairs.chunk.size() >= few_chunks)
-  for (std::size_t k = 0; k < pairs.chunk.size(); ++k) evaluate_chunk<Law, Keep>(law, in, pairs, walls, k, forces);
+double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out) {
+#pragma omp parallel for schedule(dynamic, 1) if (in.due_chunks.size() >= few_chunks)
+  for (std::size_t k = 0; k < in.due_chunks.size(); ++k) evaluate_chunk<Law, Keep>(law, in, pairs, walls, in.due_chunks[k], out);
   double largest_overlap = 0;
-  for (const PairContacts::Chunk& chunk : pairs.chunk) largest_overlap = std::max(largest_overlap, chunk.largest_overlap);
-  for (const WallContacts::Chunk& chunk : walls.chunk) {
-    largest_overlap = std::max(largest_overlap, chunk.largest_overlap);
-    if (chunk.overflow)
-      throw PhysicsError("a grain touches wall '" + in.walls[chunk.wall].name + "' in more than " +
-                         std::to_string(WallCandidate::capacity) +
-                         " places; its mesh has details much smaller than the grains");
+  for (const std::uint32_t number : in.due_chunks) {
+    largest_overlap = std::max(largest_overlap, pairs.chunk[number].largest_overlap);
+    for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w) {
+      const WallContacts::Chunk& chunk = walls.chunk[w];
+      largest_overlap = std::max(largest_overlap, chunk.largest_overlap);
+      if (chunk.overflow)
+        throw PhysicsError("a grain touches wall '" + in.walls[chunk.wall].name + "' in more than " +
+                           std::to_string(WallCandidate::capacity) +
+                           " places; its mesh has details much smaller than the grains");
+    }
   }
   return largest_overlap;
 }
 
 template <class Law>
 double evaluate_all(const Law& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls,
-                    std::vector<ForceRow>& forces) {
-  return keep_ledger ? evaluate_all<Law, true>(law, in, pairs, walls, forces)
-                     : evaluate_all<Law, false>(law, in, pairs, walls, forces);
+                    const ForceOutput& out) {
+  return keep_ledger ? evaluate_all<Law, true>(law, in, pairs, walls, out)
+                     : evaluate_all<Law, false>(law, in, pairs, walls, out);
 }
 
 }  // namespace
 
 double evaluate_contacts(const LawChoice& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls,
-                         std::vector<ForceRow>& forces) {
+                         const ForceOutput& out) {
   double overlap = 0;
   const bool compiled = [&]<class... Fixed>(std::type_identity<std::tuple<Fixed...>>) {
-    return ((law == choice_of<Fixed>() && (overlap = evaluate_all(Fixed{}, keep_ledger, in, pairs, walls, forces), true)) || ...);
+    return ((law == choice_of<Fixed>() && (overlap = evaluate_all(Fixed{}, keep_ledger, in, pairs, walls, out), true)) || ...);
   }(std::type_identity<FixedLaws>{});
-  return compiled ? overlap : evaluate_all(law, keep_ledger, in, pairs, walls, forces);
+  return compiled ? overlap : evaluate_all(law, keep_ledger, in, pairs, walls, out);
+}
+
+void book_second_half(const ForceInput& in, PairContacts& pairs, const WallContacts& walls) {
+#pragma omp parallel for schedule(dynamic, 1) if (in.due_chunks.size() >= few_chunks)
+  for (std::size_t n = 0; n < in.due_chunks.size(); ++n) {
+    const std::uint32_t number = in.due_chunks[n];
+    PairContacts::Chunk& chunk = pairs.chunk[number];
+    chunk.ledger = LedgerSums{};
+    for (std::uint32_t b = chunk.begin; b < chunk.end; ++b) {
+      if (!pairs.head[b].acts || pairs.head[b].level > in.due) continue;
+      for (std::size_t lane = PairContacts::width * b; lane < PairContacts::width * (b + 1); ++lane) {
+        if (!pairs.acts(lane)) continue;
+        const GrainRow &i = in.grains[pairs.first(lane)], &j = in.grains[pairs.second(lane)];
+        chunk.ledger += half_of_work(pairs.last[lane], i.velocity() - j.velocity(), i.angular_velocity(), j.angular_velocity());
+      }
+    }
+    for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w)
+      for (std::uint32_t q = walls.chunk[w].begin; q < walls.chunk[w].end; ++q) {
+        const WallCandidate& c = walls.candidate[q];
+        const GrainRow& grain = in.grains[c.particle];
+        for (std::size_t k = 0; k < c.size && c.level <= in.due; ++k)
+          if (c.contact[k].acts())
+            chunk.ledger += half_of_work(c.contact[k].last, grain.velocity(), grain.angular_velocity(), c.contact[k].last.wall_spin);
+      }
+  }
 }
 
 }  // namespace dem

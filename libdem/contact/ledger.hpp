@@ -1,14 +1,14 @@
 // Where the energy of the contacts goes, exact to rounding for the leapfrog scheme.
 //
-// With half-step velocities v(n-1/2) the kinetic energy at step n is K_n = m/2 v(n-1/2).v(n+1/2), and between two steps
+// With velocities v- before and v+ after the impulse that a grain gets at step n, its kinetic energy there is K_n = m/2 v-.v+, and
 //
-//   K_n - K_(n-1) = (dt/2) (F_(n-1) + F_n) . v(n-1/2)                                                                   (1)
+//   the sum over the impulses J of J_n . (v- + v+)/2, half of the first and of the last left out,                           (1)
 //
-// holds exactly. So what a contact takes from its bodies between two steps is minus that sum over its own forces and torques,
-// of the step before and of this one, both with the velocities in between. From this the ledger books, each by its own
-// formula, what is stored (energies as functions of the contact's state), damped, turned into heat by sliding and rolling, and
-// lost when contacts form and break. What is left of (1) is the error of the time stepping itself: of the second order in the
-// step where forces are smooth, of the first where contacts form, break, begin or cease to slide. It is reported as such.
+// is exactly what K changes by: v+ of one impulse is v- of the next. So what a contact takes from its bodies at a step is half its
+// impulses and angular impulses with the velocities before and half with those after. From this the ledger books, each by its
+// own formula, what is stored (energies as functions of the contact's state), damped, turned into heat by sliding and rolling,
+// and lost when contacts form and break. What is left of (1) is the error of the time stepping itself: of the second order in
+// the step where forces are smooth, of the first where contacts form, break, begin or cease to slide. It is reported as such.
 #pragma once
 #include <Eigen/Core>
 
@@ -54,9 +54,10 @@ struct StoredEnergy {
   }
 };
 
-// A contact's forces, part by part, and its geometry at the evaluation before: the first half of (1). All zero where there was
-// no contact. Of a wall: velocity of its material point at the contact and its spin.
+// A contact's forces, part by part, and its geometry at its last evaluation. All zero where there was no contact. Of a wall:
+// velocity of its material point at the contact and its spin.
 struct LastForces {
+  double duration = 0;                                                   // s, of the impulses
   Vec3 normal = Vec3::Zero();                                            // unit
   double arm_i = 0, arm_j = 0;                                           // m
   double elastic = 0, damping = 0;                                       // N
@@ -66,5 +67,18 @@ struct LastForces {
   double normal_energy = 0, surface_energy = 0, tangential_energy = 0, rolling_energy = 0;  // J
   StoredEnergy energy() const { return {normal_energy, surface_energy, tangential_energy, rolling_energy}; }
 };
+
+// Half of (1) for one contact, with `centres` the velocity of i less that of j (of a wall: nothing), and its spins.
+inline LedgerSums half_of_work(const LastForces& f, const Vec3& centres, const Vec3& spin_i, const Vec3& spin_j) {
+  const Vec3 u = centres + (f.arm_i * spin_i + f.arm_j * spin_j).cross(f.normal) - f.wall_velocity;
+  const double half = 0.5 * f.duration, closing = u.dot(f.normal);
+  LedgerSums sums;
+  sums.normal_damping = half * f.damping * closing;
+  sums.tangential_damping = -half * f.tangential_viscous.dot(u);
+  sums.rolling = -half * (f.rolling_i.dot(spin_i) + f.rolling_j.dot(spin_j));
+  // What was stored, slid away and so on is taken off where it is known.
+  sums.time_stepping = half * (f.elastic * closing - f.tangential_elastic.dot(u));
+  return sums;
+}
 
 }  // namespace dem

@@ -23,6 +23,8 @@ inline bool all(const Pack::mask_type& mask) { return std::experimental::all_of(
 
 inline double square_root(double a) { return std::sqrt(a); }
 inline Pack square_root(const Pack& a) { return std::experimental::sqrt(a); }
+inline double absolute(double a) { return std::abs(a); }
+inline Pack absolute(const Pack& a) { return std::experimental::abs(a); }
 inline double larger(double a, double b) { return a > b ? a : b; }
 inline Pack larger(const Pack& a, const Pack& b) { return select(a > b, a, b); }
 inline double smaller(double a, double b) { return a < b ? a : b; }

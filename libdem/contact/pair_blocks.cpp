@@ -21,16 +21,16 @@ struct Pair {
   bool crosses;
   std::uint32_t material_pair;
   bool apart;
-  double gap;  // m, 0 where they touch
+  std::uint8_t level;  // 0 where they are apart
+  double gap;          // m, 0 where they touch
   std::uint32_t i, j;
-  auto kind() const { return std::tie(crosses, material_pair, apart); }
-  auto key() const { return std::tie(crosses, material_pair, apart, gap, i, j); }
+  auto kind() const { return std::tie(crosses, material_pair, apart, level); }
+  auto key() const { return std::tie(crosses, material_pair, apart, level, gap, i, j); }
 };
 
 }  // namespace
 
-Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t materials,
-                  const std::function<bool(std::uint32_t, std::uint32_t)>& touches) {
+Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t materials, const LevelOf& level) {
   const std::size_t chunks = chunks_of(grains.size());
   std::vector<Lanes> of_chunk(chunks);
 #pragma omp parallel for schedule(dynamic, 1)
@@ -39,10 +39,11 @@ Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t ma
     std::vector<Pair> pairs;
     for (std::uint32_t s = list.begin[c * chunk_rows]; s < list.begin[end]; ++s) {
       const std::uint32_t i = list.first[s], j = list.second[s];
-      const bool apart = !touches(i, j);
+      const std::optional<std::uint8_t> touches = level(i, j);
+      const bool apart = !touches;
       const GrainRow &a = grains.rows[i], &b = grains.rows[j];
       const double gap = apart ? (a.position() - b.position()).norm() - a.radius() - b.radius() : 0;
-      pairs.push_back({chunk_of(j) != c, material_pair(grains, materials, i, j), apart, gap, i, j});
+      pairs.push_back({chunk_of(j) != c, material_pair(grains, materials, i, j), apart, touches.value_or(0), gap, i, j});
     }
     std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.key() < b.key(); });
     Lanes& lanes = of_chunk[c];
@@ -83,7 +84,7 @@ bool fit(const Lanes& lanes, const GrainTable& grains) {
 }
 
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
-                                bool rolling_spring, bool keep_ledger) {
+                                const Resolution& resolution, bool rolling_spring, bool keep_ledger) {
   PairContacts pairs;
   const std::size_t blocks = lanes.size() / width, chunks = chunks_of(grains.size());
   pairs.block.resize(blocks);
@@ -142,6 +143,9 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
       block.effective_mass[k] = c.effective_mass;
       block.effective_inertia[k] = c.effective_inertia;
       block.adhesion_length[k] = c.adhesion_length;
+      const LevelScale scale = level_scale(c, resolution);
+      LevelScale& least = pairs.head[b].scale;
+      least = k == 0 ? scale : LevelScale{std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
     }
   }
   return pairs;

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <optional>
 
 #include "libdem/contact/contact_store.hpp"
 #include "libdem/neighbors/pair_list.hpp"
@@ -21,16 +22,16 @@ struct GrainTable {
 using Lanes = std::vector<std::array<std::uint32_t, 2>>;
 
 // Puts the pairs into lanes. All lanes of a block are of one chunk, one pair of materials, and all or none cross to
-// another chunk. Those that touch (`touches(i, j)`) come first and share no block with those that do not, which go by
-// their gap, so that what is far apart can be left alone together.
-Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t materials,
-                  const std::function<bool(std::uint32_t, std::uint32_t)>& touches);
+// another chunk. Those that touch (`level(i, j)`, nothing for others) come first, those of one level together, and share no
+// block with those that do not, which go by their gap, so that what is far apart can be left alone together.
+using LevelOf = std::function<std::optional<std::uint8_t>(std::uint32_t, std::uint32_t)>;
+Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t materials, const LevelOf& level);
 
 // Are these lanes such as order_lanes() makes, whatever the order of the pairs within a kind and whatever touches?
 bool fit(const Lanes& lanes, const GrainTable& grains);
 
 // Blocks of such lanes, without memory. Condition: they fit.
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
-                                bool rolling_spring, bool keep_ledger);
+                                const Resolution& resolution, bool rolling_spring, bool keep_ledger);
 
 }  // namespace dem

@@ -47,6 +47,8 @@ Scene make_scene(const Case& c, std::vector<SceneWall> walls) {
   setup.keep_ledger = c.output.energy_ledger;
   setup.gravity = c.gravity;
   setup.step = c.step;
+  setup.levels = c.levels;
+  setup.accuracy = c.accuracy;
   setup.low = c.domain_low;
   setup.high = c.domain_high;
   if (c.rheometer) add_rheometer(c, scene);

@@ -58,12 +58,14 @@ void check(const Memory& memory, std::size_t n, std::size_t walls) {
     if (k > 0 && std::tuple(memory.pairs[k - 1].i, memory.pairs[k - 1].j) >= std::tuple(c.i, c.j))
       refuse("contacts that are not in ascending order of their grains");
     if (!(c.contact_radius > 0)) refuse("a contact without a contact radius");
+    if (c.level > most_levels) refuse("a contact of a level that there is not");
   }
   for (std::size_t k = 0; k < memory.wall_pairs.size(); ++k) {
     const State::WallPair& c = memory.wall_pairs[k];
     if (c.i >= n || c.wall >= walls) refuse("a contact with a wall that is not there");
     if (k > 0 && memory.wall_pairs[k - 1].i > c.i) refuse("wall contacts that are not in ascending order of their grains");
     if (!(c.contact_radius > 0)) refuse("a wall contact without a contact radius");
+    if (c.level > most_levels) refuse("a wall contact of a level that there is not");
   }
 }
 
@@ -76,17 +78,19 @@ Lanes list_pairs(const ListInput& in, const GrainStore& grains, const Memory& me
     radius[r] = grains.rows[r].radius();
   }
   const std::vector<std::uint32_t> begin = first_of_rows(memory.pairs, n);
-  const auto touches = [&](std::uint32_t i, std::uint32_t j) {
-    return find(memory, begin, grains.order[i], grains.order[j]) >= 0;
+  const auto level = [&](std::uint32_t i, std::uint32_t j) -> std::optional<std::uint8_t> {
+    const std::int64_t known = find(memory, begin, grains.order[i], grains.order[j]);
+    if (known < 0) return std::nullopt;
+    return memory.pairs[std::size_t(known)].level;
   };
-  return order_lanes(build_pair_list(position, radius, in.skin), grains.table(), in.materials.size, touches);
+  return order_lanes(build_pair_list(position, radius, in.skin), grains.table(), in.materials.size, level);
 }
 
 PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const GrainStore& grains, const Memory& memory) {
   const bool rolling_spring = has_rolling_spring(in.setup.law), keep_ledger = in.setup.keep_ledger;
   const std::vector<std::uint32_t>& order = grains.order;
   const std::vector<std::uint32_t> begin = first_of_rows(memory.pairs, grains.size());
-  PairContacts pairs = make_pair_contacts(lanes, grains.table(), in.materials, rolling_spring, keep_ledger);
+  PairContacts pairs = make_pair_contacts(lanes, grains.table(), in.materials, in.setup.resolution(), rolling_spring, keep_ledger);
   std::size_t remembered = 0;
 #pragma omp parallel for schedule(static) reduction(+ : remembered)
   for (std::size_t b = 0; b < pairs.block.size(); ++b)
@@ -109,6 +113,8 @@ PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const G
         pairs.last[lane] = turned ? swapped(last) : last;
       }
       pairs.head[b].acts = true;
+      pairs.head[b].asleep = false;
+      pairs.head[b].level = c.level;
       ++remembered;
     }
   if (remembered != memory.pairs.size())
@@ -144,6 +150,8 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
           contact.memory = {kept.spring, kept.contact_radius, kept.birth_step};
           contact.rolling = kept.rolling;
           if (setup.keep_ledger) contact.last = memory.wall_last[k];
+          c.level = kept.level;
+          c.asleep = false;
           ++remembered;
         }
         const double reach = grains.rows[r].radius() + skin;
@@ -155,6 +163,7 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
         c.part_end = std::uint32_t(fresh.parts.size());
         if (c.size == 0 && std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
         c.constants = wall_constants(in.materials(grains.material[r], setup.walls[w].material), {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
+        c.scale = level_scale(c.constants, setup.resolution());
         fresh.candidate.push_back(c);
       }
       if (first == fresh.candidate.size()) continue;
@@ -206,6 +215,7 @@ Memory gather(const GrainStore& grains, const PairContacts& pairs, const WallCon
       const std::size_t x = lane % PairContacts::width;
       State::Pair c{order[block.first[x]], order[block.second[x]], {block.spring[0][x], block.spring[1][x], block.spring[2][x]},
                     pairs.birth_step[lane], block.contact_radius[x]};
+      c.level = pairs.head[lane / PairContacts::width].level;
       if (rolling_spring) {
         const auto& rolling = pairs.rolling[lane / PairContacts::width].torque;
         c.rolling = {rolling[0][x], rolling[1][x], rolling[2][x]};
@@ -221,7 +231,7 @@ Memory gather(const GrainStore& grains, const PairContacts& pairs, const WallCon
       const WallContact& w = c.contact[k];
       if (!w.acts()) continue;
       all.wall_pairs.push_back({order[c.particle], c.wall, w.touch.feature, w.touch.normal, w.memory.spring, w.memory.birth_step,
-                                w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature});
+                                w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature, c.level});
       all.wall_last.push_back(w.last);
     }
   }

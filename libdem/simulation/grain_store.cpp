@@ -17,7 +17,6 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   const std::size_t n = grains.size();
   const Particles& p = grains.caller;
   grains.order = std::move(order);
-  grains.row_of.resize(n);
   grains.rows.assign(n + chunks_of(n), phantom());
   grains.forces.assign(n + chunks_of(n), ForceRow{});
   grains.mass.resize(n);
@@ -25,6 +24,11 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   grains.material.resize(n);
   grains.id.resize(n);
   grains.listed.resize(n);
+  const std::vector<std::uint8_t> level_before = std::move(grains.level);
+  const std::vector<std::uint32_t> row_before = std::move(grains.row_of);
+  grains.row_of.resize(n);
+  grains.level.assign(n, 0);
+  grains.asked.assign(n, 0);
 #pragma omp parallel for schedule(static)
   for (std::size_t r = 0; r < n; ++r) {
     const std::uint32_t i = grains.order[r];
@@ -34,6 +38,7 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
     grains.inertia[r] = grains.caller_inertia[i];
     grains.material[r] = p.material[i];
     grains.id[r] = p.id[i];
+    if (!level_before.empty()) grains.level[r] = level_before[row_before[i]];
   }
 }
 

@@ -1,6 +1,8 @@
 #include "libdem/simulation/simulation.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -16,6 +18,26 @@ namespace {
 
 // Below this many chunks waking other threads costs more than they save.
 constexpr std::size_t few_chunks = 3;
+
+// Of values >= 0.
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, value);
+  return most;
+}
+
+class Stopwatch {
+ public:
+  // s, the time since the last call.
+  void add_to(double& sum) {
+    const auto now = std::chrono::steady_clock::now();
+    sum += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
 
 }  // namespace
 
@@ -33,7 +55,17 @@ struct Simulation::Engine {
   double next_look = 0;    // m, on the odometer: when to look how much of the skin is left
   PairContacts pairs;
   WallContacts walls;
-  std::vector<WallLoad> loads;  // [walls] of the last evaluation
+  std::vector<WallLoad> loads;   // [walls] of the last evaluation of all contacts
+  std::vector<WallLoad> shares;  // [walls] of this step, in the mean over the steps (WallContacts::Chunk)
+
+  std::uint8_t due = 0;                        // the highest level that is, at this step
+  std::vector<std::uint8_t> chunk_level;       // the finest of the grains' in each chunk
+  std::vector<std::uint32_t> due_chunks;
+  // Of each chunk since all were due: largest component of a velocity, m/s, and of its change until all are due again if it
+  // goes on like this.
+  std::vector<double> chunk_speed, chunk_jolt;
+  double foresight = 0;  // m, upper bound of what the odometer gains until all are due again
+  Effort effort;
 
   LedgerSums spent;
   double initial_energy = 0;                  // J
@@ -64,6 +96,8 @@ struct Simulation::Engine {
       throw CaseError("the stored state has no energy ledger to go on with");
     Memory memory{std::move(state.pairs), {}, std::move(state.wall_pairs), {}};
     check(memory, n, setup.walls.size());
+    for (State::Pair& c : memory.pairs) c.level = goes_on ? std::min(c.level, setup.levels) : 0;
+    for (State::WallPair& c : memory.wall_pairs) c.level = goes_on ? std::min(c.level, setup.levels) : 0;
     if (ledger_goes_on) {
       memory.last = std::move(state.ledger.pairs);
       memory.wall_last = std::move(state.ledger.wall_pairs);
@@ -77,7 +111,13 @@ struct Simulation::Engine {
       build_lists(memory);
     begin_window();
     if (!goes_on) {
-      evaluate(0.0, true);
+      find_due();
+      for (std::size_t r = 0; r < n; ++r) {
+        double& speed = chunk_speed[r / chunk_rows];
+        speed = std::max(speed, grains.rows[r].velocity().cwiseAbs().maxCoeff());
+      }
+      foresight = foresee();
+      evaluate(true, true);
       finish_forces(false);
       sum_wall_loads();
       begin_window();  // windows cover the steps after the start
@@ -105,6 +145,13 @@ struct Simulation::Engine {
   void check_input(const Particles& p) const {
     const std::size_t n = p.size(), m = setup.materials.size();
     if (!(setup.step > 0)) throw CaseError("the time step is " + number(setup.step) + " s, expected > 0");
+    if (setup.levels > most_levels)
+      throw CaseError(std::to_string(setup.levels) + " levels of time steps, expected at most " + std::to_string(most_levels));
+    if (setup.levels > 0 && !(setup.accuracy > 0 && setup.accuracy <= most_accuracy))
+      throw CaseError("the accuracy of the time steps is " + number(setup.accuracy) + ", expected 0 < accuracy <= " + number(most_accuracy));
+    if (step % stride_of_all() != 0)
+      throw CaseError("the stored state is of step " + std::to_string(step) + ", at which not all contacts are due, expected a multiple of " +
+                      std::to_string(stride_of_all()));
     if (const auto why = incompatible(setup.law)) throw CaseError(*why);
     if (!(setup.local_damping >= 0 && setup.local_damping < 1))
       throw CaseError("the local damping is " + number(setup.local_damping) + ", expected 0 <= damping < 1");
@@ -132,15 +179,41 @@ struct Simulation::Engine {
     for (std::size_t w = 0; w < poses.size(); ++w) poses[w] = pose_at(setup.walls[w].motion, time());
   }
 
-  void evaluate(double dt, bool record) {
-    const double overlap = evaluate_contacts(setup.law, setup.keep_ledger,
-                                             {grains.rows, materials, setup.walls, poses, dt, step, odometer, setup.wall_curvature, record},
-                                             pairs, walls, grains.forces);
+  std::uint64_t stride_of_all() const { return std::uint64_t{1} << setup.levels; }
+  bool all_due() const { return due == setup.levels; }
+
+  void find_due() {
+    due = due_at(step, setup.levels);
+    due_chunks.clear();
+    for (std::uint32_t c = 0; c < chunk_level.size(); ++c)
+      if (chunk_level[c] <= due) due_chunks.push_back(c);
+  }
+
+  ForceInput force_input(bool look, bool record) const {
+    return {.grains = grains.rows, .materials = materials, .walls = setup.walls, .poses = poses, .step_length = setup.step,
+            .step = step, .odometer = odometer, .wall_curvature = setup.wall_curvature, .record = record, .look = look,
+            .due = due, .highest = setup.levels, .foresight = foresight, .level = grains.level, .due_chunks = due_chunks};
+  }
+  ForceOutput force_output() { return {grains.forces, grains.asked}; }
+
+  void evaluate(bool look, bool record) {
+    const double overlap = evaluate_contacts(setup.law, setup.keep_ledger, force_input(look, record), pairs, walls, force_output());
     window.largest_overlap = std::max(window.largest_overlap, overlap);
-    if (setup.keep_ledger && dt > 0) {
-      for (const PairContacts::Chunk& chunk : pairs.chunk) spent += chunk.ledger;
-      for (const WallContacts::Chunk& chunk : walls.chunk) spent += chunk.ledger;
-    }
+  }
+
+  template <class F>
+  void for_each_due_wall_chunk(F f) const {
+    for (const std::uint32_t c : due_chunks)
+      for (std::uint32_t k = walls.chunk_begin[c]; k < walls.chunk_begin[c + 1]; ++k) f(walls.chunk[k]);
+  }
+
+  void book_first_half() {
+    for (const std::uint32_t c : due_chunks) spent += pairs.chunk[c].ledger;
+    for_each_due_wall_chunk([&](const WallContacts::Chunk& chunk) { spent += chunk.ledger; });
+  }
+  void book_second_half() {
+    dem::book_second_half(force_input(false, false), pairs, walls);
+    for (const std::uint32_t c : due_chunks) spent += pairs.chunk[c].ledger;
   }
 
   ListInput list_input() const { return {setup, materials, poses, skin}; }
@@ -153,6 +226,10 @@ struct Simulation::Engine {
       kick[r] = setup.step / grains.mass[r];
       turn[r] = setup.step / grains.inertia[r];
     }
+    chunk_level.assign(chunks_of(size()), 0);  // all are due where lists are built
+    chunk_speed.assign(chunks_of(size()), 0.0);
+    chunk_jolt.assign(chunks_of(size()), 0.0);
+    find_due();
   }
 
   // Lists of what may touch around the present positions, the grains laid out anew.
@@ -188,6 +265,33 @@ struct Simulation::Engine {
     odometer = layout.odometer;
     next_look = layout.next_look;
     fill_lists(pairs_of_lanes, memory);
+    if (setup.levels > 0 && !layout.grain_level.empty()) restore_levels(layout);
+  }
+
+  // What an uninterrupted run would know of the levels.
+  void restore_levels(const State::Layout& layout) {
+    const auto known = [&](std::uint8_t level) { return level == State::Layout::asleep_level || level <= most_levels; };
+    const std::size_t blocks = pairs.block.size(), candidates = layout.wall_grain.size();
+    if (layout.grain_level.size() != size() || layout.block_level.size() != blocks || layout.block_wake.size() != blocks ||
+        layout.wall.size() != candidates || layout.wall_level.size() != candidates || layout.wall_wake.size() != candidates ||
+        !std::all_of(layout.block_level.begin(), layout.block_level.end(), known) ||
+        !std::all_of(layout.wall_level.begin(), layout.wall_level.end(), known) ||
+        !std::all_of(layout.grain_level.begin(), layout.grain_level.end(), known))
+      throw CaseError("the stored state has levels that do not fit its contacts");
+    const auto restore = [&](auto& head, std::uint8_t level, double wake) {
+      head.asleep = level == State::Layout::asleep_level;
+      head.level = head.asleep ? 0 : std::min(level, setup.levels);
+      head.wake = wake;
+    };
+    for (std::size_t r = 0; r < size(); ++r) grains.level[r] = std::min(layout.grain_level[r], setup.levels);
+    for (std::size_t b = 0; b < blocks; ++b) restore(pairs.head[b], layout.block_level[b], layout.block_wake[b]);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, WallCandidate*> candidate;
+    for (WallCandidate& c : walls.candidate) candidate[{c.particle, c.wall}] = &c;
+    for (std::size_t k = 0; k < candidates; ++k) {
+      const auto found = candidate.find({layout.wall_grain[k], layout.wall[k]});
+      if (found != candidate.end()) restore(*found->second, layout.wall_level[k], layout.wall_wake[k]);
+    }
+    foresight = layout.foresight;
   }
 
   void fill_lists(const Lanes& lanes, const Memory& memory) {
@@ -198,33 +302,57 @@ struct Simulation::Engine {
   // Thin lists hold little more than the contacts, thick ones are built less often. The aim is a list that lasts a few hundred
   // steps; forces do not depend on it.
   void adapt_skin() {
-    const std::uint64_t lasted = step - listed_step;
+    const std::uint64_t lasted = (step - listed_step) / stride_of_all();
     if (lasted < 200) skin = std::min(1.5 * skin, mean_radius);
     if (lasted > 2000) skin = std::max(0.8 * skin, 0.05 * mean_radius);
   }
 
-  // Completes the sums of forces on every grain and, if asked to, moves it. Returns the largest component of any velocity.
-  double finish_forces(bool move) {
-    double speed = 0, largest_compressive = 0;
+  // Completes the sums of forces on every grain that is due, gives it its level and, if asked to, moves it.
+  void finish_forces(bool move) {
+    double largest_compressive = 0;
     std::uint32_t watched = 0;
-    const std::size_t chunks = pairs.chunk.size(), n = size();
+    const std::size_t n = size();
     const Vec4 gravity = quad(setup.gravity, 0);
-#pragma omp parallel for schedule(static) reduction(max : speed, largest_compressive) reduction(+ : watched) if (chunks >= few_chunks)
-    for (std::size_t c = 0; c < chunks; ++c) {
-      add_crossing(pairs, c, grains.forces);
-      Vec4 fastest = Vec4::Zero();
+    const ForceOutput out = force_output();
+#pragma omp parallel for schedule(static) reduction(max : largest_compressive) reduction(+ : watched) if (due_chunks.size() >= few_chunks)
+    for (std::size_t d = 0; d < due_chunks.size(); ++d) {
+      const std::uint32_t c = due_chunks[d];
+      add_crossing(pairs, c, due, out);
+      Motion motion;
+      std::uint8_t finest = setup.levels;
+      double gravity_shift = 0;
       for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, n); ++i) {
-        grains.forces[i].force += grains.mass[i] * gravity;
-        const double pressed = grains.forces[i].force[3];
-        largest_compressive = std::max(largest_compressive, pressed);
-        watched += pressed > setup.watch_force ? 1 : 0;
-        if (move) fastest = fastest.cwiseMax(kick_and_drift(i).cwiseAbs());
+        std::uint8_t& level = grains.level[i];
+        if (level <= due) {
+          const std::uint8_t before = level;
+          level = std::min(grains.asked[i], due);
+          const Vec4 weight = grains.mass[i] * gravity;
+          grains.forces[i].force += stride(level) * weight;
+          gravity_shift += 0.5 * (stride(level) - stride(before)) * weight.dot(grains.rows[i].motion);
+          const double pressed = grains.forces[i].force[3];
+          largest_compressive = std::max(largest_compressive, pressed);
+          watched += pressed > setup.watch_force ? 1 : 0;
+          if (move) kick_and_drift(i, motion);
+        }
+        finest = std::min(finest, level);
       }
-      speed = std::max(speed, fastest.maxCoeff());
+      chunk_level[c] = finest;
+      // A grain that changes its level falls for another time than its weight acts.
+      pairs.chunk[c].ledger.time_stepping -= setup.step * gravity_shift;
+      if (move) remember(motion, c);
     }
     window.largest_compressive_force = std::max(window.largest_compressive_force, largest_compressive);
-    window.most_watched = std::max(window.most_watched, watched);
-    return speed;
+    if (all_due()) window.most_watched = std::max(window.most_watched, watched);
+  }
+
+  // Largest components of velocities and of what changes them until all are due again.
+  struct Motion {
+    Vec4 speed = Vec4::Zero(), jolt = Vec4::Zero();
+  };
+  void remember(const Motion& motion, std::size_t chunk) {
+    const double speed = motion.speed.maxCoeff(), jolt = motion.jolt.maxCoeff();
+    chunk_speed[chunk] = all_due() ? speed : std::max(chunk_speed[chunk], speed);
+    chunk_jolt[chunk] = all_due() ? jolt : std::max(chunk_jolt[chunk], jolt);
   }
 
   // The change of a velocity in one step under local damping; the velocity in the middle of the step says which way it goes.
@@ -234,8 +362,7 @@ struct Simulation::Engine {
     return share * change;
   }
 
-  // Returns the new velocity.
-  Vec4 kick_and_drift(std::size_t i) {
+  void kick_and_drift(std::size_t i, Motion& motion) {
     const Vec4 three(1, 1, 1, 0);
     Vec4 faster = (kick[i] * three).cwiseProduct(grains.forces[i].force), spun = turn[i] * grains.forces[i].torque;
     GrainRow& grain = grains.rows[i];
@@ -246,16 +373,33 @@ struct Simulation::Engine {
     grain.motion += faster;
     grain.spin += spun;
     const Vec4 velocity = three.cwiseProduct(grain.motion);
-    grain.place += setup.step * velocity;
-    return velocity;
+    grain.place += setup.step * stride(grains.level[i]) * velocity;
+    motion.speed = motion.speed.cwiseMax(velocity.cwiseAbs());
+    motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(setup.levels - grains.level[i])) * faster.cwiseAbs());
   }
 
-  // Likewise for all of them.
-  double move_all() {
-    double speed = 0;
-#pragma omp parallel for schedule(static) reduction(max : speed) if (pairs.chunk.size() >= few_chunks)
-    for (std::size_t i = 0; i < size(); ++i) speed = std::max(speed, kick_and_drift(i).cwiseAbs().maxCoeff());
-    return speed;
+  // Condition: all are due.
+  void move_all() {
+#pragma omp parallel for schedule(static) if (due_chunks.size() >= few_chunks)
+    for (std::size_t c = 0; c < due_chunks.size(); ++c) {
+      Motion motion;
+      for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i) kick_and_drift(i, motion);
+      remember(motion, c);
+    }
+  }
+
+  // m/s, upper bound of the speed at which two bodies near each other if every grain is at most `excess` faster than the fastest
+  // component of a velocity.
+  double closing_speed(double excess) const {
+    const double root_three = 1.7320508075688774;
+    const double speed = root_three * (largest(chunk_speed) + excess);
+    return speed + std::max(speed, wall_speed);
+  }
+
+  // Twice the change of the velocities, as it may grow.
+  double foresee() const {
+    if (setup.levels == 0) return 0;
+    return setup.step * double(stride_of_all()) * closing_speed(2 * largest(chunk_jolt));
   }
 
   // m, of the skin of the lists: what two bodies may still come nearer until the lists must be built again.
@@ -278,27 +422,33 @@ struct Simulation::Engine {
   }
 
   void sum_wall_loads() {
+    shares.assign(setup.walls.size(), WallLoad{});
+    for_each_due_wall_chunk([&](const WallContacts::Chunk& chunk) { shares[chunk.wall] += chunk.share; });
+    if (!all_due()) return;
     loads.assign(setup.walls.size(), WallLoad{});
     for (const WallContacts::Chunk& chunk : walls.chunk) loads[chunk.wall] += chunk.load;
   }
 
   // W, that the wall puts into the grains at this instant.
   double power_into_grains(std::size_t w) const {
-    return -(loads[w].force.dot(poses[w].velocity) + loads[w].torque.dot(poses[w].angular_velocity));
+    return -(shares[w].force.dot(poses[w].velocity) + shares[w].torque.dot(poses[w].angular_velocity));
   }
 
   void record_walls() {
     sum_wall_loads();
-    for (const WallContacts::Chunk& chunk : walls.chunk)
-      for (std::size_t l = 0; l < facet_labels; ++l) load_sum[chunk.wall].of_label[l] += chunk.load_of_label[l];
+    for_each_due_wall_chunk([&](const WallContacts::Chunk& chunk) {
+      for (std::size_t l = 0; l < facet_labels; ++l) load_sum[chunk.wall].of_label[l] += chunk.share_of_label[l];
+    });
     for (std::size_t w = 0; w < setup.walls.size(); ++w) {
       Window::Load& sum = load_sum[w];
-      sum.force += loads[w].force;
-      sum.torque += loads[w].torque;
-      sum.force_min = sum.force_min.cwiseMin(loads[w].force);
-      sum.force_max = sum.force_max.cwiseMax(loads[w].force);
-      sum.torque_min = sum.torque_min.cwiseMin(loads[w].torque);
-      sum.torque_max = sum.torque_max.cwiseMax(loads[w].torque);
+      sum.force += shares[w].force;
+      sum.torque += shares[w].torque;
+      if (all_due()) {
+        sum.force_min = sum.force_min.cwiseMin(loads[w].force);
+        sum.force_max = sum.force_max.cwiseMax(loads[w].force);
+        sum.torque_min = sum.torque_min.cwiseMin(loads[w].torque);
+        sum.torque_max = sum.torque_max.cwiseMax(loads[w].torque);
+      }
       const double power = power_into_grains(w);
       sum.power += power;
       wall_work[w] += 0.5 * setup.step * (last_power[w] + power);
@@ -306,36 +456,68 @@ struct Simulation::Engine {
     }
   }
 
+  void count_evaluations() {
+    for (const std::uint32_t c : due_chunks) effort.evaluations += pairs.chunk[c].evaluations;
+    for_each_due_wall_chunk([&](const WallContacts::Chunk& chunk) { effort.evaluations += chunk.evaluations; });
+  }
+
   void advance(std::uint64_t steps) {
     if (steps == 0) return;
-    double speed = move_all();
+    if (steps % stride_of_all() != 0)
+      throw CaseError("asked to go on for " + std::to_string(steps) + " steps, expected a multiple of " + std::to_string(stride_of_all()));
+    Stopwatch watch;
+    find_due();
+    move_all();
+    if (setup.keep_ledger) book_second_half();
+    watch.add_to(effort.motion);
     for (std::uint64_t k = 1; k <= steps; ++k) {
       ++step;
+      ++effort.steps;
       move_walls();
-      const double root_three = 1.7320508075688774;
-      speed *= root_three;
-      odometer += (speed + std::max(speed, wall_speed)) * setup.step;
-      if (!(odometer < next_look)) {
-        const double left = skin_left();
-        next_look = odometer + 0.999 * left;
-        if (!(left > 0.01 * skin)) {
-          guard();
-          adapt_skin();
-          show(grains);
-          build_lists(gather(grains, pairs, walls));
+      odometer += closing_speed(0) * setup.step;
+      find_due();
+      if (all_due()) {
+        foresight = foresee();
+        if (!(odometer + foresight < next_look)) {
+          watch.add_to(effort.rest);
+          renew_lists();
+          watch.add_to(effort.listing);
         }
       }
-      evaluate(setup.step, k == steps);
+      watch.add_to(effort.rest);
+      evaluate(false, k == steps);
+      watch.add_to(effort.contacts);
       if (!(window.largest_overlap < runaway_overlap)) stop();
-      speed = finish_forces(k < steps);
+      finish_forces(k < steps);
+      watch.add_to(effort.motion);
+      count_evaluations();
+      if (setup.keep_ledger) {
+        book_first_half();
+        if (k < steps) book_second_half();
+      }
       record_walls();
     }
     show(grains);
     guard();
+    watch.add_to(effort.rest);
+  }
+
+  void renew_lists() {
+    const double left = skin_left();
+    next_look = odometer + 0.999 * left;
+    if (left - foresight > 0.01 * skin) return;
+    guard();
+    adapt_skin();
+    show(grains);
+    build_lists(gather(grains, pairs, walls));
+    ++effort.lists;
   }
 
   [[noreturn]] void stop() {
-    evaluate(0.0, true);  // so that the last frame shows the forces
+    due = setup.levels;
+    due_chunks.resize(chunk_level.size());
+    std::iota(due_chunks.begin(), due_chunks.end(), 0U);
+    evaluate(true, true);  // so that the last frame shows the forces
     stop_for_overlap(guarded());
   }
 
@@ -383,6 +565,7 @@ const Setup& Simulation::setup() const { return engine_->setup; }
 const Particles& Simulation::particles() const { return engine_->grains.caller; }
 double Simulation::kinetic_energy() const { return engine_->kinetic_energy(); }
 Ledger Simulation::ledger() const { return engine_->ledger(); }
+const Effort& Simulation::effort() const { return engine_->effort; }
 double Simulation::stable_step() const { return dem::stable_step(engine_->guarded()); }
 
 std::size_t Simulation::contacts() const {
@@ -417,6 +600,21 @@ State Simulation::state() const {
   state.layout.skin = e.skin;
   state.layout.odometer = e.odometer;
   state.layout.next_look = e.next_look;
+  if (e.setup.levels > 0) {
+    constexpr std::uint8_t asleep = State::Layout::asleep_level;
+    state.layout.grain_level = grains.level;
+    for (const PairContacts::Head& head : e.pairs.head) {
+      state.layout.block_level.push_back(!head.acts && head.asleep ? asleep : head.level);
+      state.layout.block_wake.push_back(head.wake);
+    }
+    for (const WallCandidate& c : e.walls.candidate) {
+      state.layout.wall_grain.push_back(c.particle);
+      state.layout.wall.push_back(c.wall);
+      state.layout.wall_level.push_back(c.size == 0 && c.asleep ? asleep : c.level);
+      state.layout.wall_wake.push_back(c.wake);
+    }
+    state.layout.foresight = e.foresight;
+  }
   Memory memory = gather(grains, e.pairs, e.walls);
   state.pairs = std::move(memory.pairs);
   state.wall_pairs = std::move(memory.wall_pairs);

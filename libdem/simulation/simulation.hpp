@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "libdem/case/case.hpp"
+#include "libdem/contact/contact_store.hpp"
 #include "libdem/contact/laws.hpp"
-#include "libdem/contact/ledger.hpp"
-#include "libdem/contact/wall_load.hpp"
-#include "libdem/geometry/walls.hpp"
+#include "libdem/contact/levels.hpp"
 #include "libdem/particles/particles.hpp"
 
 namespace dem {
@@ -25,7 +24,10 @@ struct Setup {
   std::vector<std::vector<Interaction>> interactions;  // [M][M], symmetric
   std::vector<Wall> walls;
   Vec3 gravity{0, 0, -9.81};  // m/s^2
-  double step = 0;            // s
+  double step = 0;            // s, of level 0
+  // Contacts step at their own rate (libdem/contact/levels.hpp): every 2^level-th step, up to this level. 0: at every step.
+  std::uint8_t levels = 0;
+  double accuracy = default_accuracy;  // 1, of the levels
   // 1, in [0, 1), Cundall's local damping; settles beds. The sum of forces on a grain is reduced by this share while it speeds
   // the grain up and enlarged while it slows it down, torques likewise: vibrations of every frequency lose the same share per
   // period, a falling grain falls with less than gravity, and forces in balance are left alone (Cundall, Proc. Symp. Rock
@@ -38,6 +40,8 @@ struct Setup {
   // A grain whose centre leaves this box is lost and stops the run.
   Vec3 low = Vec3::Constant(-std::numeric_limits<double>::infinity());  // m
   Vec3 high = Vec3::Constant(std::numeric_limits<double>::infinity());  // m
+
+  Resolution resolution() const { return {step, accuracy, levels}; }
 };
 
 // What must be remembered to continue exactly. Contacts in ascending order of rows (and wall, feature).
@@ -48,6 +52,7 @@ struct State {
     std::uint64_t birth_step;
     double contact_radius = 0;    // m
     Vec3 rolling = Vec3::Zero();  // N m
+    std::uint8_t level = 0;
   };
   struct WallPair {
     std::uint32_t i, wall;
@@ -58,6 +63,7 @@ struct State {
     Vec3 rolling = Vec3::Zero();
     double distance = 0;  // m, from the centre to the wall
     std::array<double, 2> curvature{};  // 1/m, of the wall at the contact
+    std::uint8_t level = 0;
   };
   // Of a run that keeps one; `last_power` empty otherwise.
   struct Ledger {
@@ -74,6 +80,16 @@ struct State {
     std::uint64_t listed_step = 0;
     double skin = 0;                           // m, of the lists
     double odometer = 0, next_look = 0;        // m
+    // Of a run whose contacts step at their own rate; empty otherwise. Of blocks and wall candidates that do not act:
+    // `asleep_level` where they are asleep.
+    std::vector<std::uint8_t> grain_level;  // [N] rows of the run
+    std::vector<std::uint8_t> block_level;  // [lanes / 8]
+    std::vector<double> block_wake;         // [lanes / 8] m
+    std::vector<std::uint32_t> wall_grain, wall;  // [C] row of the run, wall
+    std::vector<std::uint8_t> wall_level;   // [C]
+    std::vector<double> wall_wake;          // [C] m
+    double foresight = 0;                   // m
+    static constexpr std::uint8_t asleep_level = 255;
   };
   std::uint64_t step = 0;
   Particles particles;
@@ -140,19 +156,31 @@ struct View {
 struct Window {
   std::uint64_t first_step = 0, last_step = 0;  // steps (first, last]
   double time = 0;                              // s, of last_step
-  double largest_compressive_force = 0;         // N, sum over a grain's contacts of the repulsive normal force
-  std::uint32_t most_watched = 0;               // largest number of grains above watch_force in one step
+  // N, sum over a grain's contacts of the repulsive normal force. At steps at which not all contacts are evaluated (levels), over
+  // those that are: the stiff and the fast ones.
+  double largest_compressive_force = 0;
+  std::uint32_t most_watched = 0;  // largest number of grains above watch_force in a step at which all contacts are evaluated
   double largest_overlap = 0;                   // 1, overlap over radius
   double kinetic_energy = 0;                    // J, of last_step
   struct Load {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // mean
-    Vec3 force_min, force_max, torque_min, torque_max;
+    Vec3 force_min, force_max, torque_min, torque_max;  // over the steps at which all contacts are evaluated
     double power = 0;  // W, mean of the power that the wall puts into the grains
     std::array<WallLoad, facet_labels> of_label;  // mean, by FacetLabel of the triangle; meshes only
   };
   std::vector<Load> walls;
   std::vector<std::uint8_t> is_mesh;  // [walls] 1 where `of_label` means something
   std::optional<Ledger> ledger;       // of last_step, of a run that keeps one
+};
+
+// Since the run began or was resumed.
+struct Effort {
+  std::uint64_t steps = 0;
+  Evaluations evaluations;
+  std::uint64_t lists = 0;  // built
+  // s of wall time: contacts through their law, sums and motion of the grains, lists, the rest (walls' poses and loads, ledger).
+  double contacts = 0, motion = 0, listing = 0, rest = 0;
+  double total() const { return contacts + motion + listing + rest; }
 };
 
 class Simulation {
@@ -163,8 +191,9 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  // Throws PhysicsError, naming grain, contact, time and likely cause: a number that is not finite, a runaway overlap, a lost
-  // grain, a step above the stable limit of a grain between its contacts.
+  // Where contacts step at their own rate, a multiple of 2^levels steps: then all are there. Throws PhysicsError, naming grain,
+  // contact, time and likely cause: a number that is not finite, a runaway overlap, a lost grain, a step above the stable limit
+  // of a grain between its contacts.
   void advance(std::uint64_t steps);
 
   std::uint64_t step() const;
@@ -177,6 +206,7 @@ class Simulation {
   // s, the smallest local limit of the step, 2/omega of a grain between its contacts as they are now (guards.hpp); infinity
   // where nothing touches. Costs a pass over the contacts.
   double stable_step() const;
+  const Effort& effort() const;
   State state() const;
   View view() const;
   Window take_window();

@@ -8,7 +8,7 @@
 #include "libdem/errors.hpp"
 #include "libdem/geometry/twisted_blade.hpp"
 #include "libdem/simulation/simulation.hpp"
-#include "tests/dem/grains.hpp"
+#include "tests/dem/stirred_pot.hpp"
 
 namespace dem {
 namespace {
@@ -17,37 +17,6 @@ State fresh(Particles grains) {
   State state;
   state.particles = std::move(grains);
   return state;
-}
-
-// A pot of grains over a floor in which a paddle turns and sinks.
-dem::Setup stirred_pot(const ContactModel& model = {}) {
-  dem::Setup setup = support::glass_setup(5e-8);
-  setup.law = choose_law(model);
-  setup.keep_ledger = true;
-  TwistedBlade paddle;
-  paddle.diameter = 6.2e-3;
-  paddle.height = 2e-3;
-  paddle.thickness = 1e-3;
-  paddle.shaft_diameter = 1.5e-3;
-  paddle.shaft_length = 4e-3;
-  setup.walls = {Wall{"floor", 0, Plane{Vec3(0, 0, -2.775e-3), Vec3::UnitZ()}, {}},
-                 Wall{"paddle", 0, make_mesh_wall(make_twisted_blade(paddle)),
-                      {Vec3(0, 0, 2e-3), Vec3(0, 0, -0.3), Vec3(0, 0, 80)}}};
-  for (int axis = 0; axis < 2; ++axis)
-    for (double side : {-1.0, 1.0}) {
-      Vec3 normal = Vec3::Zero();
-      normal[axis] = -side;
-      setup.walls.push_back(Wall{"side", 0, Plane{-3.6e-3 * normal, normal}, {}});
-    }
-  return setup;
-}
-
-Particles grains_below_the_paddle() {
-  Particles all = support::packed_cube(6, 5e-7, 0.05, 21), kept;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all.position[i].z() < 1.2e-3)
-      kept.add(std::uint32_t(kept.size() + 1), 0, all.radius[i], all.position[i], all.velocity[i], all.angular_velocity[i]);
-  return kept;
 }
 
 double spent(const Ledger& l) {
@@ -65,7 +34,7 @@ TEST(Ledger, ClosesForEveryPartOfTheLaw) {
   for (const std::string& name : part_names<RollingLaws>()) models.push_back({.rolling = name});
   for (const ContactModel& model : models) {
     SCOPED_TRACE(model.normal + " " + model.damping + " " + model.friction_limit + " " + model.tangential + " " + model.rolling);
-    Simulation sim(stirred_pot(model), fresh(grains_below_the_paddle()));
+    Simulation sim(support::stirred_pot(model), fresh(support::grains_below_the_paddle()));
     sim.advance(20000);
     const Ledger l = sim.ledger();
     const double moved = l.work_put_in() + l.initial - l.stored.total();
@@ -177,7 +146,7 @@ TEST(Ledger, OnlyTheIncrementalSpringGainsEnergyByUnloading) {
   omp_set_num_threads(1);
   std::map<std::string, double> gained;
   for (const std::string name : {"incremental", "incremental_rescaled"}) {
-    Simulation sim(stirred_pot({.normal = "hertz", .tangential = name}), fresh(grains_below_the_paddle()));
+    Simulation sim(support::stirred_pot({.normal = "hertz", .tangential = name}), fresh(support::grains_below_the_paddle()));
     sim.advance(20000);
     gained[name] = sim.ledger().spent.stiffness_change;
   }

@@ -1,0 +1,67 @@
+// How often a contact is evaluated. Contacts step at their own rate: one of level l is evaluated at every 2^l-th step, and its
+// force then acts on both of its bodies at once, as an impulse as long as the time until they meet again. A grain moves at the
+// rate of the finest of its contacts. What level a contact may have follows from what it does:
+//
+//   omega h <= 2 accuracy,  omega^2 = 2 E* a / m*,        where it vibrates about the load it carries                       (1)
+//   omega h <= accuracy,    omega at the deepest overlap that its normal speed v can drive it to,                           (2)
+//
+// h = 2^l steps. Of an elastic Hertz impact that overlap is d = (15 m* v^2 / (16 E* sqrt(R*)))^(2/5) (Johnson, Contact
+// Mechanics, section 11.4), so that in (2) omega^10 = (15/8)^5 (16 E* sqrt(R*) / (15 m*))^4 v^2. An impact takes 4.02/omega, and
+// at its peak the force is F (1 - (omega t)^2/2): seen every h, the largest one seen is at most (omega h)^2/8 below it, 0.5 % for an
+// accuracy of 0.2. The leapfrog scheme is stable for omega h < 2 (with omega of all contacts of a grain together).
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "libdem/case/case.hpp"
+#include "libdem/contact/touch.hpp"
+
+namespace dem {
+
+struct Resolution {
+  double step = 0;                      // s, of level 0
+  double accuracy = default_accuracy;  // 1
+  std::uint8_t highest = 0;             // level; 0: everything at every step
+};
+
+// Steps between evaluations.
+inline double stride(std::uint8_t level) { return double(1U << level); }
+
+// The highest level that is due at this step.
+inline std::uint8_t due_at(std::uint64_t step, std::uint8_t highest) {
+  return std::uint8_t(std::min<int>(std::countr_zero(step), highest));
+}
+
+// What level 0 just resolves: contact radius and normal speed. A level higher is a quarter of the radius, 1/32 of the speed.
+struct LevelScale {
+  float radius = 0;  // m
+  float speed = 0;   // m/s
+};
+
+inline LevelScale level_scale(const PairConstants<double>& c, const Resolution& r) {
+  const double relative = r.accuracy / r.step;  // 1/s
+  const double rest = 2 * c.effective_modulus / c.effective_mass / (4 * relative * relative);
+  const double stiffness = 16 * c.effective_modulus * std::sqrt(c.effective_radius) / (15 * c.effective_mass);
+  return {float(1 / rest), float(std::pow(relative, 5) / (std::pow(15.0 / 8, 2.5) * stiffness * stiffness))};
+}
+
+// Resolved with omega h at most `share` of what (1) and (2) allow?
+inline bool resolved(std::uint8_t level, const LevelScale& scale, double radius, double speed, double share) {
+  const double h = stride(level), s2 = share * share;
+  return radius * h * h <= s2 * scale.radius && speed * h * h * h * h * h <= s2 * s2 * share * scale.speed;
+}
+
+// A level falls at once to what is resolved and not above `cap`; it rises by one where the next one is due as well and would
+// still be resolved with some room.
+inline std::uint8_t next_level(std::uint8_t level, std::uint8_t due, std::uint8_t cap, const LevelScale& scale, double radius,
+                               double speed) {
+  constexpr double room = 0.8;
+  if (level < due && level < cap && resolved(level + 1, scale, radius, speed, room)) return level + 1;
+  level = std::min(level, cap);
+  while (level > 0 && !resolved(level, scale, radius, speed, 1.0)) --level;
+  return level;
+}
+
+}  // namespace dem
