@@ -10,6 +10,7 @@
 
 #include "apps/jamscope/toml_reader.hpp"
 #include "apps/jamscope/wall_tables.hpp"
+#include "libdem/case/automatic_step.hpp"
 #include "libdem/case/check_case.hpp"
 #include "libdem/contact/laws.hpp"
 #include "libdem/errors.hpp"
@@ -185,11 +186,12 @@ void read_bed(Section bed, Document& document, dem::Bed& b) {
   bed.finish();
 }
 
-void read_run(Section run, dem::Case& c) {
+void read_run(Section run, Document& document, dem::Case& c) {
   run.quantity("duration", dimension::time, c.duration);
-  run.quantity("step", dimension::time, c.step);
+  run.quantity_or("auto", c.automatic_step, "step", dimension::time, c.step);
   std::uint64_t levels = c.levels;
-  run.whole_number("levels", levels, optional);
+  if (run.whole_number("levels", levels, optional) && c.automatic_step)
+    document.problem("run.levels", "'levels' follow from step = \"auto\"; give one of the two");
   c.levels = std::uint8_t(std::min<std::uint64_t>(levels, 255));
   run.number("accuracy", c.accuracy, optional);
   double gravity = -c.gravity.z();
@@ -309,14 +311,22 @@ CaseFile read_case_text(std::string_view text, const std::string& path, const st
   }
   file.walls = read_walls(root.section("wall", optional), c, path, document);
   read_bed(root.section("bed"), document, c.bed);
-  read_run(root.section("run"), c);
+  read_run(root.section("run"), document, c);
   read_output(root.section("output"), c.output);
   read_analysis(root.section("analysis", optional), document, file.criteria);
   root.finish();
   if (!c.materials.empty()) require_pairs(file, given, document);
   document.throw_problems();
 
-  for (const dem::CaseProblem& p : dem::case_problems(c)) {
+  const auto fatal = [](const dem::CaseProblem& p) { return p.fatal; };
+  std::vector<dem::CaseProblem> problems = dem::case_problems(c);
+  if (c.automatic_step && std::none_of(problems.begin(), problems.end(), fatal)) {
+    const dem::StepChoice choice = dem::choose_steps(c);
+    c.step = choice.step;
+    c.levels = choice.levels;
+    problems = dem::case_problems(c);
+  }
+  for (const dem::CaseProblem& p : problems) {
     const std::string key = key_in_file(p.key, given, c);
     const std::string message = fmt::format("'{}' {}", key.substr(key.rfind('.') + 1), p.message);
     if (p.fatal)

@@ -135,6 +135,7 @@ void write_state(jam::h5::File& f, const dem::State& s) {
     if (!layout.grain_level.empty()) {
       f.make_group("/state/layout/levels");
       f.set_attribute("/state/layout/levels", "foresight", layout.foresight);
+      f.write("/state/layout/levels/closing_jolt", layout.closing_jolt, "m/s", "change of closing speeds to reckon with, by chunk of rows");
       f.write("/state/layout/levels/grain", layout.grain_level, "1", "a grain moves every 2^level steps; rows of the run");
       f.write("/state/layout/levels/block", layout.block_level, "1", "likewise of each block of lanes; 255: asleep");
       f.write("/state/layout/levels/block_wake", layout.block_wake, "m", "odometer up to which the block is apart");
@@ -185,6 +186,7 @@ dem::State read_state(const jam::h5::File& f) {
     layout.second = f.read<std::uint32_t>("/state/layout/second");
     if (f.exists("/state/layout/levels")) {
       layout.foresight = f.attribute<double>("/state/layout/levels", "foresight");
+      layout.closing_jolt = f.read<double>("/state/layout/levels/closing_jolt");
       layout.grain_level = f.read<std::uint8_t>("/state/layout/levels/grain");
       layout.block_level = f.read<std::uint8_t>("/state/layout/levels/block");
       layout.block_wake = f.read<double>("/state/layout/levels/block_wake");

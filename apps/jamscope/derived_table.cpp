@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/jamscope/console.hpp"
+#include "libdem/case/automatic_step.hpp"
 
 namespace jamscope {
 namespace {
@@ -80,6 +81,15 @@ std::vector<DerivedRow> derived_table(const dem::Case& c, const dem::Derived& d)
   add("time", "step", c.step, "s",
       fmt::format("{} of the smallest grain's Rayleigh time, {} of the mean one's",
                   percent(d.step_over_rayleigh_smallest), percent(d.step_over_rayleigh_mean)));
+  if (c.levels > 0)
+    add("time", "longest step", c.step * double(1U << c.levels), "s",
+        fmt::format("contacts step at their own rate, every 1 to {} steps, accuracy {:.3g}", 1U << c.levels, c.accuracy));
+  if (c.automatic_step) {
+    const dem::StepChoice choice = dem::choose_steps(c);
+    add("time", "wanted by the stiffest contact", choice.stiffest, "s",
+        d.mean_in_gap.force > 0 ? "a mean grain squeezed in the gap" : "a mean grain squeezed by 5 % of its diameter");
+    add("time", "wanted by the softest contact", choice.softest, "s", "a mean grain on another under ten times its weight");
+  }
   add("time", "Rayleigh time, smallest grain", d.rayleigh_smallest, "s");
   add("time", "Rayleigh time, mean grain", d.rayleigh_mean, "s");
   if (c.rheometer) add("time", "critical step in the gap", d.mean_in_gap.critical_step, "s",

@@ -240,6 +240,16 @@ bool Section::quantity(std::string_view key, const Dimension& dimension, double&
   return true;
 }
 
+bool Section::quantity_or(std::string_view word, bool& is_word, std::string_view key, const Dimension& dimension, double& out,
+                          Need need) {
+  const toml::node* node = table_ ? table_->get(key) : nullptr;
+  const auto* text = node ? node->as_string() : nullptr;
+  is_word = text && text->get() == word;
+  if (!is_word) return quantity(key, dimension, out, need);
+  find(key, need);
+  return true;
+}
+
 bool Section::quantities(std::string_view key, const Dimension& dimension, std::vector<double>& out, Need need) {
   const toml::node* node = find(key, need);
   if (!node) return false;

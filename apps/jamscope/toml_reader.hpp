@@ -86,6 +86,9 @@ class Section {
   std::vector<std::pair<std::string, Section>> named_sections();
 
   bool quantity(std::string_view key, const Dimension& dimension, double& out, Need need = Need::required);
+  // A quantity, or one word instead: `is_word` says which.
+  bool quantity_or(std::string_view word, bool& is_word, std::string_view key, const Dimension& dimension, double& out,
+                   Need need = Need::required);
   bool quantities(std::string_view key, const Dimension& dimension, std::vector<double>& out,
                   Need need = Need::required);
   bool number(std::string_view key, double& out, Need need = Need::required);

@@ -130,7 +130,8 @@ struct Case {
   // m, grains outside of it are lost; not used for a rheometer, whose vessel says.
   Vec3 domain_low = Vec3::Zero(), domain_high = Vec3::Zero();
   double duration = 0;        // s
-  double step = 0;            // s, of level 0
+  bool automatic_step = false;  // the next two follow from the rest (libdem/case/automatic_step.hpp)
+  double step = 0;              // s, of level 0
   // Contacts step at their own rate, up to every 2^levels steps (libdem/contact/levels.hpp); 0: all at every step.
   std::uint8_t levels = 0;
   double accuracy = default_accuracy;  // 1, of the levels

@@ -259,12 +259,13 @@ std::vector<CaseProblem> case_problems(const Case& c, double tip) {
   if (!c.rheometer && !(c.domain_low.array() < c.domain_high.array()).all())
     check.refuse("domain.high", "must lie above domain.low in every direction");
   const bool duration = check.positive("run.duration", c.duration, " s");
-  bool step = check.positive("run.step", c.step, " s");
+  const bool open = c.automatic_step && c.step == 0;  // not chosen yet
+  bool step = !open && check.positive("run.step", c.step, " s");
   if (c.levels > most_levels) {
     check.refuse("run.levels", "must be at most " + std::to_string(most_levels) + ", got " + std::to_string(c.levels));
     step = false;
   }
-  if (c.levels > 0 && !(c.accuracy > 0 && c.accuracy <= most_accuracy))
+  if ((c.levels > 0 || c.automatic_step) && !(c.accuracy > 0 && c.accuracy <= most_accuracy))
     check.refuse("run.accuracy", "must lie above 0 and be at most " + text(most_accuracy) + ", got " + text(c.accuracy));
   const double gravity = c.gravity.norm();
   if (!(gravity > 0) || !std::isfinite(gravity))

@@ -113,12 +113,12 @@ struct WallCandidate {
   static constexpr std::size_t capacity = 8;  // touches of one sphere with one wall; more stop the run
   std::uint32_t particle, wall;
   std::uint32_t part_begin, part_end;  // rows of WallContacts::parts: triangles, glued grains
-  PairConstants<double> constants;
-  LevelScale scale;
-  double wake = -std::numeric_limits<double>::infinity();  // m; this and the next two as in PairContacts::Head
-  bool asleep = true;
-  std::uint8_t level = 0;
   std::uint32_t size = 0;
+  std::uint8_t level = 0;  // this and the next three as in PairContacts::Head
+  bool asleep = true;
+  double wake = -std::numeric_limits<double>::infinity();  // m
+  LevelScale scale;
+  PairConstants<double> constants;
   std::array<WallContact, capacity> contact;  // the first `size`, sorted by feature
 };
 

@@ -155,10 +155,29 @@ std::uint8_t finest_grain(const ForceInput& in, const Block& block) {
   return finest;
 }
 
-void choose_level(const ForceInput& in, const Block& block, PairContacts::Head& head, double radius, double speed,
-                  std::uint8_t above) {
+void choose_level(const ForceInput& in, const Block& block, PairContacts::Head& head, const Demand& demand, std::uint8_t above) {
   const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, finest_grain(in, block) + above));
-  head.level = next_level(head.level, in.due, cap, head.scale, radius, speed);
+  head.level = next_level(head.level, in.due, cap, head.scale, demand);
+}
+
+// m/s, by how much the speed at which the bodies of a lane near each other may change until all levels are due again.
+double jolt_of(const ForceInput& in, const Block& block) {
+  double jolt = in.jolt[block.first[0] / chunk_rows];
+  for (std::size_t k = 0; k < PairContacts::width; ++k)
+    if (block.second[k] < in.level.size()) jolt = std::max(jolt, in.jolt[block.second[k] / chunk_rows]);
+  return jolt;
+}
+
+// s, until all levels are due again if they are due now.
+double longest_stride(const ForceInput& in) { return in.step_length * stride(in.highest); }
+
+// What lanes demand; those that are apart and stay so until all levels are due again demand nothing.
+void add_demand(const ForceInput& in, const LevelScale& scale, double jolt, const Pack& gap, const Pack& radius, const Pack& speed,
+                Demand& demand) {
+  const Pack soon = only(gap < (speed + Pack(jolt)) * Pack(longest_stride(in)), speed);
+  demand.radius = std::max(demand.radius, double(std::experimental::hmax(radius)));
+  demand.speed = std::max(demand.speed, double(std::experimental::hmax(soon)));
+  demand.impact = std::max(demand.impact, double(std::experimental::hmax(only(drives_deeper(scale, radius, soon), soon))));
 }
 
 // The second grains of blocks that cross to other chunks hear of it in add_crossing().
@@ -171,14 +190,16 @@ void ask(const ForceInput& in, const Block& block, std::uint8_t level, bool cros
 }
 
 struct Approach {
-  double gap;    // m, the smallest that a lane still has to close before a contact forms; < 0 where one forms now
-  double speed;  // m/s, the largest at which bodies that may touch soon near each other or part; 0 unless levels are in use
+  double gap;     // m, the smallest that a lane still has to close before a contact forms; < 0 where one forms now
+  bool soon;      // may a lane form a contact until all levels are due again?
+  Demand demand;  // nothing unless levels are in use
 };
 template <class Law>
 JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number) {
   const Block& block = pairs.block[number];
   PairConstants<Pack> c = all_lanes(in.materials.pair[pairs.head[number].material_pair]);
-  Approach approach{std::numeric_limits<double>::infinity(), 0};
+  Approach approach{std::numeric_limits<double>::infinity(), false, {}};
+  const double jolt = levels_in_use(in) ? jolt_of(in, block) : 0;
   for (std::size_t lane = 0; lane < PairContacts::width; lane += pack_width) {
     const auto i = [&](std::size_t k) -> const GrainRow& { return in.grains[block.first[lane + k]]; };
     const auto j = [&](std::size_t k) -> const GrainRow& { return in.grains[block.second[lane + k]]; };
@@ -194,27 +215,22 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
     const auto motion_i = load_quads([&](std::size_t k) { return i(k).motion.data(); });
     const auto motion_j = load_quads([&](std::size_t k) { return j(k).motion.data(); });
     const Triple<Pack> apart{motion_j[0] - motion_i[0], motion_j[1] - motion_i[1], motion_j[2] - motion_i[2]};
-    const Pack speed = only(gap < Pack(in.foresight), absolute(dot(apart, branch) / distance));
-    approach.speed = std::max(approach.speed, double(std::experimental::hmax(speed)));
+    const Pack speed = absolute(dot(apart, branch) / distance);
+    approach.soon |= any_of(gap < (speed + Pack(jolt)) * Pack(longest_stride(in)));
+    add_demand(in, pairs.head[number].scale, jolt, gap, Pack(0.0), speed, approach.demand);
   }
   return approach;
 }
 
-// What the law says of as many lanes of a block as a pack holds. Lanes without a contact, phantoms among them, have no forces.
-struct LaneForces {
-  Touch<Pack> touch;
+// How lanes of a block, as many as a pack holds, touch now.
+struct LaneTouch {
   PairConstants<Pack> constants;
-  ContactForce<Pack> f;
-  Mask<Pack> hold, touched;
-  Triple<Pack> centres;  // m/s, of i less j
-  Triple<Pack> tangential, force, torque_i, torque_j;
-  Pack pressed;  // N
+  Touch<Pack> touch;
+  Triple<Pack> centres;         // m/s, of i less j
+  Pack inverse_smaller_radius;  // 1/m
 };
-
-template <class Law>
-JAMSCOPE_FLATTEN inline LaneForces evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number,
-                                                  std::size_t lane, double advance, Pack& largest_overlap) {
-  Block& block = pairs.block[number];
+inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs, std::size_t number, std::size_t lane) {
+  const Block& block = pairs.block[number];
   const auto i = [&](std::size_t k) -> const GrainRow& { return in.grains[block.first[lane + k]]; };
   const auto j = [&](std::size_t k) -> const GrainRow& { return in.grains[block.second[lane + k]]; };
   const auto [x_i, y_i, z_i, radius_i] = load_quads([&](std::size_t k) { return i(k).place.data(); });
@@ -224,7 +240,7 @@ JAMSCOPE_FLATTEN inline LaneForces evaluate_lanes(const Law& law, const ForceInp
   const auto spin_i = load_quads([&](std::size_t k) { return i(k).spin.data(); });
   const auto spin_j = load_quads([&](std::size_t k) { return j(k).spin.data(); });
 
-  LaneForces r;
+  LaneTouch r;
   PairConstants<Pack>& c = r.constants;
   c = all_lanes(in.materials.pair[pairs.head[number].material_pair]);
   c.effective_radius = load(block.effective_radius, lane);
@@ -245,89 +261,90 @@ JAMSCOPE_FLATTEN inline LaneForces evaluate_lanes(const Law& law, const ForceInp
   touch.normal = branch * Pack(1.0 / distance);
   r.centres = {vx_i - vx_j, vy_i - vy_j, vz_i - vz_j};
   touch.velocity = r.centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
-
-  Springs<Pack> springs{load(block.spring, lane), nothing(), load(block.contact_radius, lane)};
-  const bool rolling_spring = !pairs.rolling.empty();
-  if (rolling_spring) springs.rolling = load(pairs.rolling[number].torque, lane);
-  r.touched = springs.contact_radius > Pack(0.0);
-  r.hold = holds(law, touch.overlap, r.touched, c);
-  r.f = evaluate(law, touch, c, springs, Pack(advance));
-
-  store(only(r.hold, springs.tangential), block.spring, lane);
-  store(only(r.hold, springs.contact_radius), block.contact_radius, lane);
-  if (rolling_spring) store(only(r.hold, springs.rolling), pairs.rolling[number].torque, lane);
-  const Mask<Pack> formed = r.hold && !r.touched;
-  if (any_of(formed))
-    for (std::size_t k = 0; k < pack_width; ++k)
-      if (formed[k]) pairs.birth_step[PairContacts::width * number + lane + k] = in.step;
-
-  r.tangential = r.f.tangential.elastic + r.f.tangential.viscous;
-  const Pack pushed = r.f.normal.elastic + r.f.damping;
-  r.force = only(r.hold, r.tangential - touch.normal * pushed);
-  const Triple<Pack> twist = cross(touch.normal, r.tangential);
-  r.torque_i = only(r.hold, twist * touch.arm_i + r.f.rolling.on_i);
-  r.torque_j = only(r.hold, twist * touch.arm_j + r.f.rolling.on_j);
-  r.pressed = only(r.hold, larger(pushed, Pack(0.0)));
-  largest_overlap = larger(largest_overlap, only(r.hold, touch.overlap * larger(inverse_i, inverse_j)));
+  r.inverse_smaller_radius = larger(inverse_i, inverse_j);
   return r;
 }
 
-// Adds the impulses, in steps, to the grains.
-inline void scatter(const LaneForces& r, PairContacts& pairs, std::size_t number, std::size_t lane, double steps, bool crosses,
-                    std::vector<ForceRow>& forces) {
-  const Block& block = pairs.block[number];
-  const Pack weight = steps, zero = 0.0;
-  const Triple<Pack> force = r.force * weight, torque_i = r.torque_i * weight, torque_j = r.torque_j * weight;
-  for_each_row({force.x, force.y, force.z, r.pressed, torque_i.x, torque_i.y, torque_i.z, zero},
-               [&](std::size_t k, const auto& row) { add_row(forces[block.first[lane + k]], row); });
-  const std::array<Pack, 8> opposite{-force.x, -force.y, -force.z, r.pressed, torque_j.x, torque_j.y, torque_j.z, zero};
+// Lanes of a block that touch like this: law, impulses of so many steps added to the grains. Lanes without a contact, phantoms
+// among them, add nothing. Says whether one has a contact.
+template <class Law, bool Keep>
+inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::size_t lane,
+                           const LaneTouch& lanes, double advance, double steps, bool crosses, const ForceOutput& out,
+                           Pack& largest_overlap, LedgerSums& sums) {
+  Block& block = pairs.block[number];
+  const Touch<Pack>& touch = lanes.touch;
+  const PairConstants<Pack>& c = lanes.constants;
+  Springs<Pack> springs{load(block.spring, lane), nothing(), load(block.contact_radius, lane)};
+  const bool rolling_spring = !pairs.rolling.empty();
+  if (rolling_spring) springs.rolling = load(pairs.rolling[number].torque, lane);
+  const Mask<Pack> touched = springs.contact_radius > Pack(0.0);
+  const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
+  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Pack(advance));
+
+  store(only(hold, springs.tangential), block.spring, lane);
+  store(only(hold, springs.contact_radius), block.contact_radius, lane);
+  if (rolling_spring) store(only(hold, springs.rolling), pairs.rolling[number].torque, lane);
+  const std::size_t first_lane = PairContacts::width * number + lane;
+  const Mask<Pack> formed = hold && !touched;
+  if (any_of(formed))
+    for (std::size_t k = 0; k < pack_width; ++k)
+      if (formed[k]) pairs.birth_step[first_lane + k] = in.step;
+
+  const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
+  const Pack pushed = f.normal.elastic + f.damping;
+  const Pack weight = only(hold, Pack(steps)), pressed = only(hold, larger(pushed, Pack(0.0))), zero(0.0);
+  const Triple<Pack> force = only(hold, (tangential - touch.normal * pushed) * weight);
+  const Triple<Pack> twist = cross(touch.normal, tangential);
+  const Triple<Pack> torque_i = only(hold, (twist * touch.arm_i + f.rolling.on_i) * weight);
+  const Triple<Pack> torque_j = only(hold, (twist * touch.arm_j + f.rolling.on_j) * weight);
+  largest_overlap = larger(largest_overlap, only(hold, touch.overlap * lanes.inverse_smaller_radius));
+  for_each_row({force.x, force.y, force.z, pressed, torque_i.x, torque_i.y, torque_i.z, zero},
+               [&](std::size_t k, const auto& row) { add_row(out.forces[block.first[lane + k]], row); });
+  const std::array<Pack, 8> opposite{-force.x, -force.y, -force.z, pressed, torque_j.x, torque_j.y, torque_j.z, zero};
   if (crosses) {
     ForceRow* const to = &pairs.crossing[pairs.head[number].crossing + lane];
     for_each_row(opposite, [&](std::size_t k, const auto& row) { store_row(to[k], row); });
   } else {
-    for_each_row(opposite, [&](std::size_t k, const auto& row) { add_row(forces[block.second[lane + k]], row); });
+    for_each_row(opposite, [&](std::size_t k, const auto& row) { add_row(out.forces[block.second[lane + k]], row); });
   }
+
+  if constexpr (Keep)
+    book(law, touch, c, f, hold, touched, lanes.centres, false, nothing(), Pack(steps * in.step_length), pack_width,
+         [&](std::size_t k) -> LastForces& { return pairs.last[first_lane + k]; }, sums);
+  if (in.record)
+    for (std::size_t k = 0; k < pack_width; ++k)
+      if (hold[k])
+        pairs.result[first_lane + k] = {lane_of(tangential, k), f.normal.elastic[k], f.damping[k], f.tangential.sliding[k]};
+  return any_of(hold);
 }
 
-// A block: law, level, impulses. Says by its head whether one of its lanes is a contact. One that has just woken acts from now on,
+// A block: level, law, impulses. Says by its head whether one of its lanes is a contact. One that has just woken acts from now on,
 // not since it was looked at last.
 template <class Law, bool Keep>
 JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, bool woken,
                                      bool crosses, const ForceOutput& out, Pack& largest_overlap, LedgerSums& sums) {
   constexpr std::size_t packs = PairContacts::width / pack_width;
+  const Block& block = pairs.block[number];
   PairContacts::Head& head = pairs.head[number];
-  std::array<LaneForces, packs> result;
-  head.acts = false;
-  for (std::size_t p = 0; p < packs; ++p) {
-    result[p] = evaluate_lanes(law, in, pairs, number, p * pack_width, advance_of(in, woken ? 0 : head.level), largest_overlap);
-    head.acts |= any_of(result[p].hold);
-  }
-  double steps = 1;
+  std::array<LaneTouch, packs> lanes;
+  for (std::size_t p = 0; p < packs; ++p) lanes[p] = touch_of_lanes(in, pairs, number, p * pack_width);
+  double advance = advance_of(in, 0), steps = 1;
   if (levels_in_use(in)) {
-    double radius = 0, speed = 0;
-    for (const LaneForces& r : result) {
-      radius = std::max(radius, double(std::experimental::hmax(only(r.hold, r.f.normal.contact_radius))));
-      const Mask<Pack> soon = r.hold || (r.touch.overlap > Pack(-in.foresight));
-      speed = std::max(speed, double(std::experimental::hmax(only(soon, absolute(dot(r.touch.velocity, r.touch.normal))))));
-    }
     const std::uint8_t before = head.level;
-    choose_level(in, pairs.block[number], head, radius, speed, levels_above_contacts);
-    ask(in, pairs.block[number], head.level, crosses, out);
+    const double jolt = jolt_of(in, block);
+    Demand demand;
+    for (std::size_t p = 0; p < packs; ++p)
+      add_demand(in, head.scale, jolt, -lanes[p].touch.overlap, load(block.contact_radius, p * pack_width),
+                 absolute(dot(lanes[p].touch.velocity, lanes[p].touch.normal)), demand);
+    choose_level(in, block, head, demand, levels_above_contacts);
+    ask(in, block, head.level, crosses, out);
+    advance = advance_of(in, woken ? 0 : before);
     steps = impulse_steps(woken ? head.level : before, head.level);
   }
-  for (std::size_t p = 0; p < packs; ++p) {
-    const LaneForces& r = result[p];
-    scatter(r, pairs, number, p * pack_width, steps, crosses, out.forces);
-    const std::size_t first_lane = PairContacts::width * number + p * pack_width;
-    if constexpr (Keep)
-      book(law, r.touch, r.constants, r.f, r.hold, r.touched, r.centres, false, nothing(), Pack(steps * in.step_length), pack_width,
-           [&](std::size_t k) -> LastForces& { return pairs.last[first_lane + k]; }, sums);
-    if (in.record)
-      for (std::size_t k = 0; k < pack_width; ++k)
-        if (r.hold[k])
-          pairs.result[first_lane + k] = {lane_of(r.tangential, k), r.f.normal.elastic[k], r.f.damping[k],
-                                          r.f.tangential.sliding[k]};
-  }
+  head.acts = false;
+  for (std::size_t p = 0; p < packs; ++p)
+    head.acts |= evaluate_lanes<Law, Keep>(law, in, pairs, number, p * pack_width, lanes[p], advance, steps, crosses, out,
+                                           largest_overlap, sums);
 }
 
 template <class Law, bool Keep>
@@ -347,11 +364,11 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
         continue;
       }
       const Approach approach = look_at(law, in, pairs, b);
-      head.asleep = approach.gap > in.foresight;
+      head.asleep = approach.gap > 0 && !approach.soon;
       if (approach.gap >= 0) {
         head.wake = in.odometer + cautious * approach.gap;
         if (!head.asleep && levels_in_use(in)) {
-          choose_level(in, pairs.block[b], head, 0, approach.speed, levels_above_apart);
+          choose_level(in, pairs.block[b], head, approach.demand, levels_above_apart);
           ask(in, pairs.block[b], head.level, crosses, out);
         }
         continue;
@@ -546,12 +563,23 @@ double normal_speed(const GrainRow& grain, const WallPose& pose, const WallTouch
   return std::abs((grain.velocity() - pose.velocity - pose.angular_velocity.cross(lever)).dot(touch.normal));
 }
 
-void choose_level(const ForceInput& in, WallCandidate& candidate, double radius, double speed, std::uint8_t above,
-                  const ForceOutput& out) {
+void choose_level(const ForceInput& in, WallCandidate& candidate, const Demand& demand, std::uint8_t above, const ForceOutput& out) {
   const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, in.level[candidate.particle] + above));
-  candidate.level = next_level(candidate.level, in.due, cap, candidate.scale, radius, speed);
+  candidate.level = next_level(candidate.level, in.due, cap, candidate.scale, demand);
   std::uint8_t& asked = out.asked[candidate.particle];
   asked = std::min(asked, candidate.level);
+}
+
+Demand demand_of(const WallCandidate& candidate, const GrainRow& grain, const WallPose& pose) {
+  Demand demand;
+  for (std::size_t t = 0; t < candidate.size; ++t) {
+    const WallContact& contact = candidate.contact[t];
+    const double radius = contact.memory.contact_radius, speed = normal_speed(grain, pose, contact.touch);
+    demand.radius = std::max(demand.radius, radius);
+    demand.speed = std::max(demand.speed, speed);
+    if (drives_deeper(candidate.scale, radius, speed)) demand.impact = std::max(demand.impact, speed);
+  }
+  return demand;
 }
 
 template <class Law, bool Keep>
@@ -590,12 +618,12 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       double gap = sight - reach, speed = 0;
       for (const WallTouch& touch : touches) {
         gap = std::min(gap, touch.distance - reach);
-        speed = std::max(speed, normal_speed(grain, pose, touch));
+        if (levels_in_use(in)) speed = std::max(speed, normal_speed(grain, pose, touch));
       }
       candidate.asleep = gap > in.foresight;
       if (gap > 0) {
         candidate.wake = in.odometer + cautious * gap;
-        if (!candidate.asleep && levels_in_use(in)) choose_level(in, candidate, 0, speed, levels_above_apart, out);
+        if (!candidate.asleep && levels_in_use(in)) choose_level(in, candidate, {0, speed, speed}, levels_above_apart, out);
         continue;
       }
       std::erase_if(touches, [&](const WallTouch& touch) { return touch.distance > reach; });
@@ -612,14 +640,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
     if (candidate.size == 0) candidate.wake = in.odometer;
     double steps = 1;
     if (levels_in_use(in)) {
-      double radius = 0, speed = 0;
-      for (std::size_t t = 0; t < candidate.size; ++t) {
-        const WallContact& contact = candidate.contact[t];
-        const double overlap = std::max(grain.radius() - contact.touch.distance, 0.0);
-        radius = std::max({radius, contact.memory.contact_radius, std::sqrt(candidate.constants.effective_radius * overlap)});
-        speed = std::max(speed, normal_speed(grain, pose, contact.touch));
-      }
-      choose_level(in, candidate, radius, speed, levels_above_contacts, out);
+      choose_level(in, candidate, demand_of(candidate, grain, pose), levels_above_contacts, out);
       steps = impulse_steps(woken ? candidate.level : before, candidate.level);
     }
     chunk.evaluations += {0, 0, candidate.size, std::uint64_t{candidate.size} << candidate.level};

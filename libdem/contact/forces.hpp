@@ -19,6 +19,7 @@ struct ForceInput {
   // Levels (levels.hpp). Grains whose level is due are all at this step; what is evaluated has no others.
   std::uint8_t due = 0, highest = 0;
   double foresight = 0;                          // m, by how much more the odometer may grow until all levels are due again
+  const std::vector<double>& jolt;               // [chunks] m/s, by how much two grains' speeds may change until then
   const std::vector<std::uint8_t>& level;        // [N] of the grains until now
   const std::vector<std::uint32_t>& due_chunks;  // that have such a grain
 };

@@ -53,14 +53,30 @@ inline bool resolved(std::uint8_t level, const LevelScale& scale, double radius,
   return radius * h * h <= s2 * scale.radius && speed * h * h * h * h * h <= s2 * s2 * share * scale.speed;
 }
 
+// What a contact's level must resolve.
+struct Demand {
+  double radius = 0;  // m, of the contact
+  double speed = 0;   // m/s, normal
+  double impact = 0;  // m/s, likewise where it drives the contact deeper than it is loaded (drives_deeper)
+};
+
+// Would a contact of radius a be driven to more than half of a by its normal speed v? The vibrations of others are small against
+// the load: (1) resolves them. In terms of what level 0 resolves, (1) with a_0 and (2) with v_0 and a quarter of a_0:
+// (v/v_0)^(2/5) a_0/4 > a/2.
+template <class Real>
+Mask<Real> drives_deeper(const LevelScale& scale, const Real& radius, const Real& speed) {
+  const Real relative_radius = radius * Real(2 / double(scale.radius)), relative_speed = speed * Real(1 / double(scale.speed));
+  const Real square = relative_radius * relative_radius;
+  return relative_speed * relative_speed > square * square * relative_radius;
+}
+
 // A level falls at once to what is resolved and not above `cap`; it rises by one where the next one is due as well and would
-// still be resolved with some room.
-inline std::uint8_t next_level(std::uint8_t level, std::uint8_t due, std::uint8_t cap, const LevelScale& scale, double radius,
-                               double speed) {
+// still be resolved with some room, whatever drives the contact.
+inline std::uint8_t next_level(std::uint8_t level, std::uint8_t due, std::uint8_t cap, const LevelScale& scale, const Demand& demand) {
   constexpr double room = 0.8;
-  if (level < due && level < cap && resolved(level + 1, scale, radius, speed, room)) return level + 1;
+  if (level < due && level < cap && resolved(level + 1, scale, demand.radius, demand.speed, room)) return level + 1;
   level = std::min(level, cap);
-  while (level > 0 && !resolved(level, scale, radius, speed, 1.0)) --level;
+  while (level > 0 && !resolved(level, scale, demand.radius, demand.impact, 1.0)) --level;
   return level;
 }
 

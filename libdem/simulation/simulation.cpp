@@ -65,6 +65,7 @@ struct Simulation::Engine {
   // goes on like this.
   std::vector<double> chunk_speed, chunk_jolt;
   double foresight = 0;  // m, upper bound of what the odometer gains until all are due again
+  std::vector<double> closing_jolt;  // [chunks] m/s, by how much two bodies' speeds may change until then, when all were due last
   Effort effort;
 
   LedgerSums spent;
@@ -116,7 +117,7 @@ struct Simulation::Engine {
         double& speed = chunk_speed[r / chunk_rows];
         speed = std::max(speed, grains.rows[r].velocity().cwiseAbs().maxCoeff());
       }
-      foresight = foresee();
+      foresee();
       evaluate(true, true);
       finish_forces(false);
       sum_wall_loads();
@@ -192,7 +193,7 @@ struct Simulation::Engine {
   ForceInput force_input(bool look, bool record) const {
     return {.grains = grains.rows, .materials = materials, .walls = setup.walls, .poses = poses, .step_length = setup.step,
             .step = step, .odometer = odometer, .wall_curvature = setup.wall_curvature, .record = record, .look = look,
-            .due = due, .highest = setup.levels, .foresight = foresight, .level = grains.level, .due_chunks = due_chunks};
+            .due = due, .highest = setup.levels, .foresight = foresight, .jolt = closing_jolt, .level = grains.level, .due_chunks = due_chunks};
   }
   ForceOutput force_output() { return {grains.forces, grains.asked}; }
 
@@ -229,6 +230,7 @@ struct Simulation::Engine {
     chunk_level.assign(chunks_of(size()), 0);  // all are due where lists are built
     chunk_speed.assign(chunks_of(size()), 0.0);
     chunk_jolt.assign(chunks_of(size()), 0.0);
+    closing_jolt.assign(chunks_of(size()), 0.0);
     find_due();
   }
 
@@ -274,6 +276,7 @@ struct Simulation::Engine {
     const std::size_t blocks = pairs.block.size(), candidates = layout.wall_grain.size();
     if (layout.grain_level.size() != size() || layout.block_level.size() != blocks || layout.block_wake.size() != blocks ||
         layout.wall.size() != candidates || layout.wall_level.size() != candidates || layout.wall_wake.size() != candidates ||
+        layout.closing_jolt.size() != chunks_of(size()) ||
         !std::all_of(layout.block_level.begin(), layout.block_level.end(), known) ||
         !std::all_of(layout.wall_level.begin(), layout.wall_level.end(), known) ||
         !std::all_of(layout.grain_level.begin(), layout.grain_level.end(), known))
@@ -292,6 +295,7 @@ struct Simulation::Engine {
       if (found != candidate.end()) restore(*found->second, layout.wall_level[k], layout.wall_wake[k]);
     }
     foresight = layout.foresight;
+    closing_jolt = layout.closing_jolt;
   }
 
   void fill_lists(const Lanes& lanes, const Memory& memory) {
@@ -308,6 +312,8 @@ struct Simulation::Engine {
   }
 
   // Completes the sums of forces on every grain that is due, gives it its level and, if asked to, moves it.
+  void finish_forces(bool move) { setup.levels == 0 ? finish_forces<false>(move) : finish_forces<true>(move); }
+  template <bool Levels>
   void finish_forces(bool move) {
     double largest_compressive = 0;
     std::uint32_t watched = 0;
@@ -322,19 +328,24 @@ struct Simulation::Engine {
       std::uint8_t finest = setup.levels;
       double gravity_shift = 0;
       for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, n); ++i) {
-        std::uint8_t& level = grains.level[i];
-        if (level <= due) {
+        Vec4 weight = grains.mass[i] * gravity;
+        if constexpr (Levels) {
+          std::uint8_t& level = grains.level[i];
+          if (level > due) {
+            finest = std::min(finest, level);
+            continue;
+          }
           const std::uint8_t before = level;
           level = std::min(grains.asked[i], due);
-          const Vec4 weight = grains.mass[i] * gravity;
-          grains.forces[i].force += stride(level) * weight;
+          finest = std::min(finest, level);
           gravity_shift += 0.5 * (stride(level) - stride(before)) * weight.dot(grains.rows[i].motion);
-          const double pressed = grains.forces[i].force[3];
-          largest_compressive = std::max(largest_compressive, pressed);
-          watched += pressed > setup.watch_force ? 1 : 0;
-          if (move) kick_and_drift(i, motion);
+          weight *= stride(level);
         }
-        finest = std::min(finest, level);
+        grains.forces[i].force += weight;
+        const double pressed = grains.forces[i].force[3];
+        largest_compressive = std::max(largest_compressive, pressed);
+        watched += pressed > setup.watch_force ? 1 : 0;
+        if (move) kick_and_drift<Levels>(i, motion);
       }
       chunk_level[c] = finest;
       // A grain that changes its level falls for another time than its weight acts.
@@ -362,6 +373,7 @@ struct Simulation::Engine {
     return share * change;
   }
 
+  template <bool Levels>
   void kick_and_drift(std::size_t i, Motion& motion) {
     const Vec4 three(1, 1, 1, 0);
     Vec4 faster = (kick[i] * three).cwiseProduct(grains.forces[i].force), spun = turn[i] * grains.forces[i].torque;
@@ -373,9 +385,13 @@ struct Simulation::Engine {
     grain.motion += faster;
     grain.spin += spun;
     const Vec4 velocity = three.cwiseProduct(grain.motion);
-    grain.place += setup.step * stride(grains.level[i]) * velocity;
     motion.speed = motion.speed.cwiseMax(velocity.cwiseAbs());
-    motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(setup.levels - grains.level[i])) * faster.cwiseAbs());
+    if constexpr (Levels) {
+      grain.place += setup.step * stride(grains.level[i]) * velocity;
+      motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(setup.levels - grains.level[i])) * faster.cwiseAbs());
+    } else {
+      grain.place += setup.step * velocity;
+    }
   }
 
   // Condition: all are due.
@@ -383,7 +399,8 @@ struct Simulation::Engine {
 #pragma omp parallel for schedule(static) if (due_chunks.size() >= few_chunks)
     for (std::size_t c = 0; c < due_chunks.size(); ++c) {
       Motion motion;
-      for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i) kick_and_drift(i, motion);
+      for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i)
+        setup.levels == 0 ? kick_and_drift<false>(i, motion) : kick_and_drift<true>(i, motion);
       remember(motion, c);
     }
   }
@@ -396,10 +413,12 @@ struct Simulation::Engine {
     return speed + std::max(speed, wall_speed);
   }
 
-  // Twice the change of the velocities, as it may grow.
-  double foresee() const {
-    if (setup.levels == 0) return 0;
-    return setup.step * double(stride_of_all()) * closing_speed(2 * largest(chunk_jolt));
+  // Looks ahead to when all are due again, which they are now. Changes of velocities may double until then.
+  void foresee() {
+    if (setup.levels == 0) return;
+    const double root_three = 1.7320508075688774;
+    for (std::size_t c = 0; c < closing_jolt.size(); ++c) closing_jolt[c] = 2 * root_three * 2 * chunk_jolt[c];
+    foresight = setup.step * double(stride_of_all()) * closing_speed(2 * largest(chunk_jolt));
   }
 
   // m, of the skin of the lists: what two bodies may still come nearer until the lists must be built again.
@@ -477,7 +496,7 @@ struct Simulation::Engine {
       odometer += closing_speed(0) * setup.step;
       find_due();
       if (all_due()) {
-        foresight = foresee();
+        foresee();
         if (!(odometer + foresight < next_look)) {
           watch.add_to(effort.rest);
           renew_lists();
@@ -614,6 +633,7 @@ State Simulation::state() const {
       state.layout.wall_wake.push_back(c.wake);
     }
     state.layout.foresight = e.foresight;
+    state.layout.closing_jolt = e.closing_jolt;
   }
   Memory memory = gather(grains, e.pairs, e.walls);
   state.pairs = std::move(memory.pairs);

@@ -57,12 +57,12 @@ TEST(Levels, ResolveWhatTheirFormulaSays) {
 
 TEST(Levels, FallAtOnceAndRiseOneByOneWhereTheNextIsDue) {
   const LevelScale scale{1, 1};
-  EXPECT_EQ(next_level(4, 0, 9, scale, 0.9, 0), 0);
-  EXPECT_EQ(next_level(4, 4, 2, scale, 0, 0), 2);
-  EXPECT_EQ(next_level(2, 2, 9, scale, 0, 0), 2);
-  EXPECT_EQ(next_level(2, 5, 9, scale, 0, 0), 3);
-  EXPECT_EQ(next_level(2, 5, 2, scale, 0, 0), 2);
-  EXPECT_EQ(next_level(2, 5, 9, scale, 1.0 / 64 * 0.9, 0), 2) << "no room";
+  EXPECT_EQ(next_level(4, 0, 9, scale, {0.9, 0, 0}), 0);
+  EXPECT_EQ(next_level(4, 4, 2, scale, {0, 0, 0}), 2);
+  EXPECT_EQ(next_level(2, 2, 9, scale, {0, 0, 0}), 2);
+  EXPECT_EQ(next_level(2, 5, 9, scale, {0, 0, 0}), 3);
+  EXPECT_EQ(next_level(2, 5, 2, scale, {0, 0, 0}), 2);
+  EXPECT_EQ(next_level(2, 5, 9, scale, {1.0 / 64 * 0.9, 0, 0}), 2) << "no room";
 }
 
 struct Impact {
