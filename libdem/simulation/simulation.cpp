@@ -413,12 +413,17 @@ struct Simulation::Engine {
     return speed + std::max(speed, wall_speed);
   }
 
-  // Looks ahead to when all are due again, which they are now. Changes of velocities may double until then.
+  // Looks ahead to when all are due again, which they are now.
   void foresee() {
     if (setup.levels == 0) return;
     const double root_three = 1.7320508075688774;
-    for (std::size_t c = 0; c < closing_jolt.size(); ++c) closing_jolt[c] = 2 * root_three * 2 * chunk_jolt[c];
-    foresight = setup.step * double(stride_of_all()) * closing_speed(2 * largest(chunk_jolt));
+    for (std::size_t c = 0; c < closing_jolt.size(); ++c) closing_jolt[c] = 2 * root_three * chunk_jolt[c];
+    foresight = setup.step * double(stride_of_all()) * closing_speed(largest(chunk_jolt));
+  }
+
+  // m, by which the odometer will not quite grow until then unless speeds double.
+  double travel_until_all_due() const {
+    return setup.levels == 0 ? 0 : 2 * setup.step * double(stride_of_all()) * closing_speed(0);
   }
 
   // m, of the skin of the lists: what two bodies may still come nearer until the lists must be built again.
@@ -497,7 +502,7 @@ struct Simulation::Engine {
       find_due();
       if (all_due()) {
         foresee();
-        if (!(odometer + foresight < next_look)) {
+        if (!(odometer + travel_until_all_due() < next_look)) {
           watch.add_to(effort.rest);
           renew_lists();
           watch.add_to(effort.listing);
@@ -524,7 +529,7 @@ struct Simulation::Engine {
   void renew_lists() {
     const double left = skin_left();
     next_look = odometer + 0.999 * left;
-    if (left - foresight > 0.01 * skin) return;
+    if (left - travel_until_all_due() > 0.01 * skin) return;
     guard();
     adapt_skin();
     show(grains);
