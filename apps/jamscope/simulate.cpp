@@ -79,7 +79,9 @@ class Run {
   bool advance() {
     const dem::Case& c = file_.physics;
     const double end = std::min(c.duration, options_.until.value_or(c.duration));
-    const std::uint64_t last = std::uint64_t(std::llround(end / c.step));
+    // All contacts meet every 2^levels steps; a run can only stop there.
+    const std::uint64_t meet = std::uint64_t{1} << c.levels;
+    const std::uint64_t last = (std::uint64_t(std::llround(end / c.step)) + meet - 1) / meet * meet;
     const std::uint64_t frame = steps_in(c.output.frame_interval, c.step);
     const std::uint64_t window = std::min(steps_in(c.output.series_interval, c.step), frame);
     const std::uint64_t checkpoint = steps_in(c.output.checkpoint_interval, c.step);

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "apps/jamscope/toml_reader.hpp"
+#include "libdem/case/automatic_step.hpp"
 #include "libdem/case/derived.hpp"
 #include "libdem/errors.hpp"
 
@@ -128,6 +129,30 @@ survival_classes = ["5 ms", "10 ms"]
   EXPECT_EQ(file.criteria.gap_margin, 1);
   EXPECT_EQ(file.criteria.survival_classes, (std::vector<double>{5e-3, 10e-3}));
   EXPECT_TRUE(file.warnings.empty());
+}
+
+TEST(CaseFile, AnAutomaticStepFollowsFromTheContactsAndDividesEveryInterval) {
+  const std::string text = replaced("\"5e-8 s\"", "\"auto\"");
+  const dem::Case c = read_case_text(text, "case.toml").physics;
+  const dem::StepChoice choice = dem::choose_steps(c);
+  const double longest = c.step * double(1U << c.levels);
+  EXPECT_TRUE(c.automatic_step);
+  EXPECT_GT(c.levels, 0);
+  EXPECT_LE(c.step, choice.stiffest * (1 + 1e-12));
+  EXPECT_GT(2 * c.step, 0.5 * choice.stiffest);
+  EXPECT_LE(longest, choice.softest * (1 + 1e-12));
+  for (const double interval : {c.duration, c.output.frame_interval, c.output.series_interval, c.output.checkpoint_interval})
+    EXPECT_NEAR(interval / longest, std::round(interval / longest), 1e-6);
+  // Half the accuracy number is half the steps, but for whole numbers.
+  const dem::Case fine = read_case_text(text, "case.toml", {"run.accuracy=0.075"}).physics;
+  EXPECT_NEAR(dem::choose_steps(fine).stiffest, 0.5 * choice.stiffest, 1e-12 * choice.stiffest);
+  EXPECT_LE(fine.step, 0.5 * choice.stiffest);
+
+  EXPECT_THAT(message(text, {"run.levels=3"}), HasSubstr("'levels' follow from step = \"auto\""));
+  EXPECT_THAT(message(text, {"run.accuracy=0.7"}), HasSubstr("must lie above 0 and be at most 0.5"));
+  EXPECT_THAT(message(replaced("\"5e-8 s\"", "\"automatic\"")), HasSubstr("step"));
+  EXPECT_THAT(message(good, {"run.levels=11"}), HasSubstr("must be at most 10"));
+  EXPECT_THAT(message(good, {"run.levels=7"}), HasSubstr("after which all contacts meet"));
 }
 
 TEST(CaseFile, ReadsABladeFromAMeshFileBesideTheCase) {

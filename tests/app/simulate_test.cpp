@@ -145,20 +145,41 @@ TEST_F(SimulateProgram, RunsFromCaseToReportTheSameForAnyThreadsAndAgainFromItsF
 }
 
 TEST_F(SimulateProgram, ResumesToTheSameNumbersAsAnUninterruptedRun) {
-  ASSERT_EQ(run_program(command("whole")).code, 0);
-  ASSERT_EQ(run_program(command("parts", "--until '0.73 ms'")).code, 0);
-  const Outcome rest = run_program(command("parts", "--resume"));
-  ASSERT_EQ(rest.code, 0) << rest.err;
-  // The part that ended between two frames recorded its last instant, which the whole run did not.
-  const auto whole = jam::open_jamscope_file(folder_ / "whole/run.h5"), parts = jam::open_jamscope_file(folder_ / "parts/run.h5");
-  ASSERT_EQ(parts.frames, whole.frames + 1);
-  const jam::Snapshot a = whole.read(whole.frames - 1), b = parts.read(parts.frames - 1);
-  EXPECT_EQ(a.step, b.step);
-  EXPECT_EQ(a.particles.position, b.particles.position);
-  EXPECT_EQ(a.particles.velocity, b.particles.velocity);
-  EXPECT_EQ(a.pp.row, b.pp.row);
-  EXPECT_EQ(a.pp.tangential_force, b.pp.tangential_force);
-  EXPECT_EQ(a.walls[2].force, b.walls[2].force);
+  for (const std::string step : {"", " --set run.step=auto"}) {
+    SCOPED_TRACE(step);
+    const std::string number = std::to_string(step.size());
+    ASSERT_EQ(run_program(command("whole" + number, step)).code, 0);
+    ASSERT_EQ(run_program(command("parts" + number, "--until '0.73 ms'" + step)).code, 0);
+    const Outcome rest = run_program(command("parts" + number, "--resume" + step, 2));
+    ASSERT_EQ(rest.code, 0) << rest.err;
+    // The part that ended between two frames recorded its last instant, which the whole run did not.
+    const auto whole = jam::open_jamscope_file(folder_ / ("whole" + number + "/run.h5")), parts = jam::open_jamscope_file(folder_ / ("parts" + number + "/run.h5"));
+    ASSERT_EQ(parts.frames, whole.frames + 1);
+    const jam::Snapshot a = whole.read(whole.frames - 1), b = parts.read(parts.frames - 1);
+    EXPECT_EQ(a.step, b.step);
+    EXPECT_EQ(a.particles.position, b.particles.position);
+    EXPECT_EQ(a.particles.velocity, b.particles.velocity);
+    EXPECT_EQ(a.pp.row, b.pp.row);
+    EXPECT_EQ(a.pp.tangential_force, b.pp.tangential_force);
+    EXPECT_EQ(a.walls[2].force, b.walls[2].force);
+  }
+}
+
+TEST_F(SimulateProgram, BenchSaysHowFastAndWhereTheTimeGoes) {
+  const std::string options = "bench " + (folder_ / "pea.toml") + " --bed-cache " + cache_ + " --seconds 0.3 --warm-up 0.1 -q --threads 1 --set run.step=auto";
+  const Outcome text = run_program(options);
+  ASSERT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("grain steps per second"));
+  const auto of = [&](const std::string& more) { return nlohmann::json::parse(run_program(options + " --json" + more).out); };
+  const nlohmann::json levels = of(""), uniform = of(" --uniform");
+  EXPECT_GT(levels["levels"], 0);
+  EXPECT_EQ(uniform["levels"], 0);
+  EXPECT_EQ(uniform["evaluations_over_uniform"], 1.0);
+  EXPECT_LT(levels["evaluations_over_uniform"], 1.0);
+  for (const nlohmann::json& j : {levels, uniform}) {
+    EXPECT_GT(j["particle_steps_per_second"], 0);
+    EXPECT_NEAR(double(j["share_contacts"]) + double(j["share_motion"]) + double(j["share_lists"]) + double(j["share_rest"]), 1, 1e-9);
+  }
 }
 
 TEST_F(SimulateProgram, RefusesToResumeAnotherCaseAndToOverwrite) {
