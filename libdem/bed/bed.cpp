@@ -50,6 +50,7 @@ constexpr double everywhere = std::numeric_limits<double>::infinity();  // m
 Setup at_rest(const Setup& run) {
   Setup still = run;
   still.keep_ledger = false;
+  still.levels = 0;  // it ends stages after any number of steps
   for (Wall& w : still.walls) w.motion = resting_at(w.motion, 0);
   return still;
 }

@@ -297,7 +297,8 @@ File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) 
   // files are closed by their destructors, so that clean-up has nothing to do for us.
   [[maybe_unused]] static const herr_t no_cleanup_at_exit = H5dont_atexit();
   const Quiet quiet;
-  const Handle access = file_access();
+  const Handle access = file_access(), plan(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  keep_metadata_within_pages(plan.get());
   std::string verb = "open for reading";
   if (mode != Mode::create) {
     std::error_code error;
@@ -306,13 +307,10 @@ File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) 
     if (!is_hdf5(path)) throw DataError(path_ + ": is not an HDF5 file");
   }
   switch (mode) {
-    case Mode::create: {
+    case Mode::create:
       verb = "create";
-      const Handle plan(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-      keep_metadata_within_pages(plan.get());
       id_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, plan.get(), access.get());
       break;
-    }
     case Mode::read: {
       // Metadata that a writer is just changing is read again, after 1, 2, 4, ... ns plus the system's latency; HDF5's
       // own limit of 100 attempts would wait for minutes where the file is damaged.

@@ -168,7 +168,7 @@ TEST(CaseFile, UnknownKeysAreErrorsThatNameTheNearestKnownOne) {
             "case.toml:5:1: unknown key 'yuong' in [material.glass]; did you mean 'young'?");
   EXPECT_EQ(message_after("[vessel]", "[vesel]"), "case.toml:19:2: unknown table 'vesel'; did you mean 'vessel'?");
   EXPECT_EQ(message_after("[run]", "[run]\ncolour = 1"),
-            "case.toml:38:1: unknown key 'colour' in [run]; known: duration, step, gravity");
+            "case.toml:38:1: unknown key 'colour' in [run]; known: duration, step, levels, accuracy, gravity");
   EXPECT_EQ(message(good + "[analysis]\njam_forces = \"2 N\"\n"),
             "case.toml:45:1: unknown key 'jam_forces' in [analysis]; did you mean 'jam_force'?");
   // A twisted blade has no file.
