@@ -135,7 +135,8 @@ void write_state(jam::h5::File& f, const dem::State& s) {
     if (!layout.grain_level.empty()) {
       f.make_group("/state/layout/levels");
       f.set_attribute("/state/layout/levels", "foresight", layout.foresight);
-      f.write("/state/layout/levels/closing_jolt", layout.closing_jolt, "m/s", "change of closing speeds to reckon with, by chunk of rows");
+      f.write("/state/layout/levels/closing_jolt", layout.closing_jolt, "m/s",
+              "change of closing speeds to reckon with, by chunk of rows");
       f.write("/state/layout/levels/grain", layout.grain_level, "1", "a grain moves every 2^level steps; rows of the run");
       f.write("/state/layout/levels/block", layout.block_level, "1", "likewise of each block of lanes; 255: asleep");
       f.write("/state/layout/levels/block_wake", layout.block_wake, "m", "odometer up to which the block is apart");

@@ -218,7 +218,9 @@ void check_interval(const std::string& key, double interval, const Case& c, Chec
   const double step = c.step * double(1U << c.levels), count = interval / step, whole = std::round(count);
   if (whole < 1 || std::abs(count - whole) > 1e-6 * std::max(1.0, whole)) {
     const std::string levels =
-        c.levels == 0 ? "" : " (" + std::to_string(1U << c.levels) + " steps of " + text(c.step) + " s, after which all contacts meet)";
+        c.levels == 0
+            ? ""
+            : " (" + std::to_string(1U << c.levels) + " steps of " + text(c.step) + " s, after which all contacts meet)";
     check.refuse(key, "must be a whole number of steps of " + text(step) + " s" + levels + ", got " + text(interval) +
                           " s = " + text(count) + " steps");
   } else if (interval > c.duration * (1 + 1e-12)) {

@@ -474,8 +474,9 @@ struct WallSlot {
 };
 
 template <class Law, bool Keep>
-JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, const std::array<WallSlot, pack_width>& slot, std::size_t count,
-                         WallContacts::Chunk& chunk, const ForceOutput& out, LedgerSums& sums) {
+JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, const std::array<WallSlot, pack_width>& slot,
+                                          std::size_t count, WallContacts::Chunk& chunk, const ForceOutput& out,
+                                          LedgerSums& sums) {
   const WallPose& pose = in.poses[chunk.wall];
   const auto grain = [&](std::size_t k) -> const GrainRow& { return in.grains[slot[k].candidate->particle]; };
 
@@ -563,7 +564,8 @@ double normal_speed(const GrainRow& grain, const WallPose& pose, const WallTouch
   return std::abs((grain.velocity() - pose.velocity - pose.angular_velocity.cross(lever)).dot(touch.normal));
 }
 
-void choose_level(const ForceInput& in, WallCandidate& candidate, const Demand& demand, std::uint8_t above, const ForceOutput& out) {
+void choose_level(const ForceInput& in, WallCandidate& candidate, const Demand& demand, std::uint8_t above,
+                  const ForceOutput& out) {
   const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, in.level[candidate.particle] + above));
   candidate.level = next_level(candidate.level, in.due, cap, candidate.scale, demand);
   std::uint8_t& asked = out.asked[candidate.particle];
@@ -730,9 +732,10 @@ void book_second_half(const ForceInput& in, PairContacts& pairs, const WallConta
       for (std::uint32_t q = walls.chunk[w].begin; q < walls.chunk[w].end; ++q) {
         const WallCandidate& c = walls.candidate[q];
         const GrainRow& grain = in.grains[c.particle];
-        for (std::size_t k = 0; k < c.size && c.level <= in.due; ++k)
-          if (c.contact[k].acts())
-            chunk.ledger += half_of_work(c.contact[k].last, grain.velocity(), grain.angular_velocity(), c.contact[k].last.wall_spin);
+        for (std::size_t k = 0; k < c.size && c.level <= in.due; ++k) {
+          const LastForces& last = c.contact[k].last;
+          if (c.contact[k].acts()) chunk.ledger += half_of_work(last, grain.velocity(), grain.angular_velocity(), last.wall_spin);
+        }
       }
   }
 }

@@ -162,7 +162,8 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
         candidate_parts(setup.walls[w], in.poses[w], grains.rows[r].position(), reach, fresh.parts);
         c.part_end = std::uint32_t(fresh.parts.size());
         if (c.size == 0 && std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
-        c.constants = wall_constants(in.materials(grains.material[r], setup.walls[w].material), {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
+        c.constants = wall_constants(in.materials(grains.material[r], setup.walls[w].material),
+                                     {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
         c.scale = level_scale(c.constants, setup.resolution());
         fresh.candidate.push_back(c);
       }

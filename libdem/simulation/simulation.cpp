@@ -149,10 +149,11 @@ struct Simulation::Engine {
     if (setup.levels > most_levels)
       throw CaseError(std::to_string(setup.levels) + " levels of time steps, expected at most " + std::to_string(most_levels));
     if (setup.levels > 0 && !(setup.accuracy > 0 && setup.accuracy <= most_accuracy))
-      throw CaseError("the accuracy of the time steps is " + number(setup.accuracy) + ", expected 0 < accuracy <= " + number(most_accuracy));
+      throw CaseError("the accuracy of the time steps is " + number(setup.accuracy) + ", expected 0 < accuracy <= " +
+                      number(most_accuracy));
     if (step % stride_of_all() != 0)
-      throw CaseError("the stored state is of step " + std::to_string(step) + ", at which not all contacts are due, expected a multiple of " +
-                      std::to_string(stride_of_all()));
+      throw CaseError("the stored state is of step " + std::to_string(step) +
+                      ", at which not all contacts are due, expected a multiple of " + std::to_string(stride_of_all()));
     if (const auto why = incompatible(setup.law)) throw CaseError(*why);
     if (!(setup.local_damping >= 0 && setup.local_damping < 1))
       throw CaseError("the local damping is " + number(setup.local_damping) + ", expected 0 <= damping < 1");
@@ -193,7 +194,8 @@ struct Simulation::Engine {
   ForceInput force_input(bool look, bool record) const {
     return {.grains = grains.rows, .materials = materials, .walls = setup.walls, .poses = poses, .step_length = setup.step,
             .step = step, .odometer = odometer, .wall_curvature = setup.wall_curvature, .record = record, .look = look,
-            .due = due, .highest = setup.levels, .foresight = foresight, .jolt = closing_jolt, .level = grains.level, .due_chunks = due_chunks};
+            .due = due, .highest = setup.levels, .foresight = foresight, .jolt = closing_jolt, .level = grains.level,
+            .due_chunks = due_chunks};
   }
   ForceOutput force_output() { return {grains.forces, grains.asked}; }
 
@@ -488,7 +490,8 @@ struct Simulation::Engine {
   void advance(std::uint64_t steps) {
     if (steps == 0) return;
     if (steps % stride_of_all() != 0)
-      throw CaseError("asked to go on for " + std::to_string(steps) + " steps, expected a multiple of " + std::to_string(stride_of_all()));
+      throw CaseError("asked to go on for " + std::to_string(steps) + " steps, expected a multiple of " +
+                      std::to_string(stride_of_all()));
     Stopwatch watch;
     find_due();
     move_all();
