@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include <chrono>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/jamscope/case_file.hpp"
@@ -17,19 +15,9 @@
 namespace jamscope {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-// Bytes of memory that the process holds; 0 where the system does not tell.
-double resident_bytes() {
-  std::ifstream status("/proc/self/statm");
-  double pages = 0, resident = 0;
-  if (!(status >> pages >> resident)) return 0;
-  return resident * 4096;
-}
-
 struct Measured {
-  double wall = 0;  // s
+  double wall = 0, step = 0;  // s
+  std::uint8_t levels = 0;
   dem::Effort effort;
   std::size_t grains = 0, contacts = 0;
   double bytes = 0;
@@ -41,42 +29,32 @@ struct Measured {
   }
 };
 
-dem::Effort operator-(const dem::Effort& a, const dem::Effort& b) {
-  dem::Effort d = a;
-  d.steps -= b.steps;
-  d.evaluations.blocks -= b.evaluations.blocks;
-  d.evaluations.blocks_at_every_step -= b.evaluations.blocks_at_every_step;
-  d.evaluations.touches -= b.evaluations.touches;
-  d.evaluations.touches_at_every_step -= b.evaluations.touches_at_every_step;
-  d.lists -= b.lists;
-  d.contacts -= b.contacts;
-  d.motion -= b.motion;
-  d.listing -= b.listing;
-  d.rest -= b.rest;
-  return d;
-}
-
-// Steps in rounds that are long against reading the clock and short against `seconds`.
+// Steps in rounds that are long against reading the clock and short against `seconds`. Returns how long it was at it, s.
 double run_for(dem::Simulation& simulation, double seconds, std::uint64_t& round) {
   const auto begin = Clock::now();
   while (true) {
     const double before = seconds_since(begin);
     if (before >= seconds) return before;
+    if (stop_requested()) throw Interrupted{};
     simulation.advance(round);
     if (seconds_since(begin) - before < 0.05 * seconds) round *= 2;
   }
 }
 
-Measured measure(dem::Simulation& simulation, const BenchOptions& options, double bytes_before) {
-  std::uint64_t round = std::uint64_t{1} << simulation.setup().levels;
-  run_for(simulation, options.warm_up, round);
-  const dem::Effort before = simulation.effort();
+Measured measure(const dem::Setup& setup, dem::State state, const BenchOptions& options, Console& console) {
   Measured m;
+  dem::Simulation simulation(setup, std::move(state));
+  std::uint64_t round = std::uint64_t{1} << setup.levels;
+  console.note(fmt::format("warming up for {:.3g} s, then measuring for {:.3g} s", options.warm_up, options.seconds));
+  run_for(simulation, options.warm_up, round);
+  simulation = dem::Simulation(setup, simulation.state());  // counts from here
   m.wall = run_for(simulation, options.seconds, round);
-  m.effort = simulation.effort() - before;
+  m.effort = simulation.effort();
+  m.step = setup.step;
+  m.levels = setup.levels;
   m.grains = simulation.particles().size();
   m.contacts = simulation.contacts();
-  m.bytes = resident_bytes() - bytes_before;
+  m.bytes = double(simulation.bytes());
   return m;
 }
 
@@ -85,8 +63,8 @@ nlohmann::json as_json(const Measured& m, const CaseFile& file, const BenchOptio
   return {{"case", file.physics.name},
           {"machine", facts_of_this_process({}).machine},
           {"threads", o.threads},
-          {"step_s", file.physics.step},
-          {"levels", o.uniform ? 0 : file.physics.levels},
+          {"step_s", m.step},
+          {"levels", m.levels},
           {"grains", m.grains},
           {"contacts", m.contacts},
           {"steps", e.steps},
@@ -106,15 +84,17 @@ std::string as_text(const Measured& m, const CaseFile& file, const BenchOptions&
   const dem::Effort& e = m.effort;
   const auto share = [&](double seconds) { return fmt::format("{:.1f} %", 100 * seconds / e.total()); };
   std::string text;
-  const auto line = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<28}{}\n", name, value); };
+  const auto line = [&](const std::string& name, const std::string& value) {
+    text += fmt::format("{:<28}{}\n", name, value);
+  };
   line("case", fmt::format("{}, {} grains, {} contacts", file.physics.name, m.grains, m.contacts));
-  line("step", o.uniform || file.physics.levels == 0
-                   ? fmt::format("{:.3g} s, every contact at every step", file.physics.step)
-                   : fmt::format("{:.3g} s, contacts at every 1 to {} steps", file.physics.step, 1U << file.physics.levels));
+  line("step", m.levels == 0 ? fmt::format("{:.3g} s, every contact at every step", m.step)
+                             : fmt::format("{:.3g} s, contacts at every 1 to {} steps", m.step, 1U << m.levels));
   line("measured", fmt::format("{} steps in {:.1f} s on {} thread{}", e.steps, m.wall, o.threads, o.threads == 1 ? "" : "s"));
   line("grain steps per second", fmt::format("{:.3g}", m.particle_steps()));
   line("contacts per second", fmt::format("{:.3g} through the law", m.evaluations() / m.wall));
-  line("contacts over uniform", fmt::format("{:.3f} of what every step would evaluate", m.evaluations() / m.evaluations_at_every_step()));
+  line("contacts over uniform",
+       fmt::format("{:.3f} of what every step would evaluate", m.evaluations() / m.evaluations_at_every_step()));
   line("time in contacts", share(e.contacts));
   line("time in motion", share(e.motion));
   line("time in lists", fmt::format("{}, {} built", share(e.listing), e.lists));
@@ -143,12 +123,10 @@ int bench(const BenchOptions& options) {
     scene.setup.watch_force = file.criteria.jam_force;
     if (options.uniform) scene.setup.levels = 0;
     dem::SettledBed bed = settled_bed(file, scene, options.bed_cache, console);
-    const double bytes_before = resident_bytes();
-    dem::Simulation simulation(scene.setup, std::move(bed.state));
-    const Measured m = measure(simulation, options, bytes_before);
+    const Measured m = measure(scene.setup, std::move(bed.state), options, console);
     fmt::print("{}", options.json ? as_json(m, file, options).dump(2) + "\n" : as_text(m, file, options));
   } catch (const Interrupted&) {
-    return 0;
+    console.note("stopped before the end, nothing was measured");
   }
   return 0;
 }

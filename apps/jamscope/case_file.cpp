@@ -188,7 +188,7 @@ void read_bed(Section bed, Document& document, dem::Bed& b) {
 
 void read_run(Section run, Document& document, dem::Case& c) {
   run.quantity("duration", dimension::time, c.duration);
-  run.quantity_or("auto", c.automatic_step, "step", dimension::time, c.step);
+  run.quantity_or("auto", &c.automatic_step, "step", dimension::time, c.step);
   std::uint64_t levels = c.levels;
   if (run.whole_number("levels", levels, optional) && c.automatic_step)
     document.problem("run.levels", "'levels' follow from step = \"auto\"; give one of the two");

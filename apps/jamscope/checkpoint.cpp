@@ -71,6 +71,57 @@ constexpr std::tuple last_columns{
     Column{"rolling_energy", &Last::rolling_energy, "J", "stored by the rolling spring"},
 };
 
+// Likewise of a struct that holds whole arrays.
+template <class Owner, class Value>
+struct Array {
+  const char* name;
+  std::vector<Value> Owner::*member;
+  const char *unit, *doc;
+};
+using Layout = dem::State::Layout;
+constexpr std::tuple particle_arrays{
+    Array{"id", &dem::Particles::id, "1", "persistent id"},
+    Array{"material", &dem::Particles::material, "1", "index of the material"},
+    Array{"radius", &dem::Particles::radius, "m", "radius"},
+    Array{"position", &dem::Particles::position, "m", "centre"},
+    Array{"velocity", &dem::Particles::velocity, "m/s", "velocity, half a step before the positions"},
+    Array{"angular_velocity", &dem::Particles::angular_velocity, "rad/s", "angular velocity, likewise"},
+};
+constexpr std::tuple force_arrays{
+    Array{"force", &dem::State::force, "N", "sum of forces; empty before the first step"},
+    Array{"torque", &dem::State::torque, "N m", "sum of torques; empty before the first step"},
+};
+constexpr std::tuple layout_arrays{
+    Array{"order", &Layout::order, "1", "row in particles for each row of the run"},
+    Array{"listed", &Layout::listed, "m", "centres when the lists were built, rows of the run"},
+    Array{"first", &Layout::first, "1", "row of the run of each lane's first grain"},
+    Array{"second", &Layout::second, "1", "row of the run of each lane's second grain"},
+};
+constexpr std::tuple level_arrays{
+    Array{"grain", &Layout::grain_level, "1", "a grain moves every 2^level steps; rows of the run"},
+    Array{"block", &Layout::block_level, "1", "likewise of each block of lanes; 255: asleep"},
+    Array{"block_wake", &Layout::block_wake, "m", "odometer up to which the block is apart"},
+    Array{"wall_grain", &Layout::wall_grain, "1", "row of the run of a grain near a wall"},
+    Array{"wall", &Layout::wall, "1", "the wall"},
+    Array{"wall_level", &Layout::wall_level, "1", "as for blocks"},
+    Array{"wall_wake", &Layout::wall_wake, "m", "as for blocks"},
+    Array{"closing_jolt", &Layout::closing_jolt, "m/s", "change of closing speeds to reckon with, by chunk of rows"},
+};
+
+template <class Owner, class Arrays>
+void write_arrays(jam::h5::File& f, const std::string& folder, const Owner& owner, const Arrays& arrays) {
+  std::apply([&](const auto&... a) { (f.write(folder + a.name, owner.*a.member, a.unit, a.doc), ...); }, arrays);
+}
+
+template <class Owner, class Arrays>
+void read_arrays(const jam::h5::File& f, const std::string& folder, Owner& owner, const Arrays& arrays) {
+  const auto read = [&](const auto& array) {
+    using Value = typename std::decay_t<decltype(owner.*array.member)>::value_type;
+    owner.*array.member = f.read<Value>(folder + array.name);
+  };
+  std::apply([&](const auto&... array) { (read(array), ...); }, arrays);
+}
+
 template <class Row, class Columns>
 void write_columns(jam::h5::File& f, const std::string& folder, const std::vector<Row>& rows, const Columns& columns) {
   const auto write = [&](const auto& column) {
@@ -110,40 +161,22 @@ constexpr std::pair<const char*, double dem::LedgerSums::*> spent_columns[] = {
 void write_state(jam::h5::File& f, const dem::State& s) {
   f.make_group("/state");
   f.set_attribute("/state", "step", s.step);
-  const dem::Particles& p = s.particles;
-  f.write("/state/particles/id", p.id, "1", "persistent id");
-  f.write("/state/particles/material", p.material, "1", "index of the material");
-  f.write("/state/particles/radius", p.radius, "m", "radius");
-  f.write("/state/particles/position", p.position, "m", "centre");
-  f.write("/state/particles/velocity", p.velocity, "m/s", "velocity, half a step before the positions");
-  f.write("/state/particles/angular_velocity", p.angular_velocity, "rad/s", "angular velocity, likewise");
-  f.write("/state/particles/force", s.force, "N", "sum of forces; empty before the first step");
-  f.write("/state/particles/torque", s.torque, "N m", "sum of torques; empty before the first step");
+  write_arrays(f, "/state/particles/", s.particles, particle_arrays);
+  write_arrays(f, "/state/particles/", s, force_arrays);
   write_columns(f, "/state/pairs/", s.pairs, pair_columns);
   write_columns(f, "/state/walls/", s.wall_pairs, wall_pair_columns);
   if (!s.force.empty()) {
-    const dem::State::Layout& layout = s.layout;
+    const Layout& layout = s.layout;
     f.make_group("/state/layout");
     f.set_attribute("/state/layout", "listed_step", layout.listed_step);
     f.set_attribute("/state/layout", "skin", layout.skin);
     f.set_attribute("/state/layout", "odometer", layout.odometer);
     f.set_attribute("/state/layout", "next_look", layout.next_look);
-    f.write("/state/layout/order", layout.order, "1", "row in particles for each row of the run");
-    f.write("/state/layout/listed", layout.listed, "m", "centres when the lists were built, rows of the run");
-    f.write("/state/layout/first", layout.first, "1", "row of the run of each lane's first grain");
-    f.write("/state/layout/second", layout.second, "1", "row of the run of each lane's second grain");
+    write_arrays(f, "/state/layout/", layout, layout_arrays);
     if (!layout.grain_level.empty()) {
       f.make_group("/state/layout/levels");
       f.set_attribute("/state/layout/levels", "foresight", layout.foresight);
-      f.write("/state/layout/levels/closing_jolt", layout.closing_jolt, "m/s",
-              "change of closing speeds to reckon with, by chunk of rows");
-      f.write("/state/layout/levels/grain", layout.grain_level, "1", "a grain moves every 2^level steps; rows of the run");
-      f.write("/state/layout/levels/block", layout.block_level, "1", "likewise of each block of lanes; 255: asleep");
-      f.write("/state/layout/levels/block_wake", layout.block_wake, "m", "odometer up to which the block is apart");
-      f.write("/state/layout/levels/wall_grain", layout.wall_grain, "1", "row of the run of a grain near a wall");
-      f.write("/state/layout/levels/wall", layout.wall, "1", "the wall");
-      f.write("/state/layout/levels/wall_level", layout.wall_level, "1", "as for blocks");
-      f.write("/state/layout/levels/wall_wake", layout.wall_wake, "m", "as for blocks");
+      write_arrays(f, "/state/layout/levels/", layout, level_arrays);
     }
   }
   const dem::State::Ledger& l = s.ledger;
@@ -161,14 +194,8 @@ dem::State read_state(const jam::h5::File& f) {
   dem::State s;
   s.step = f.attribute<std::uint64_t>("/state", "step");
   dem::Particles& p = s.particles;
-  p.id = f.read<std::uint32_t>("/state/particles/id");
-  p.material = f.read<std::uint8_t>("/state/particles/material");
-  p.radius = f.read<double>("/state/particles/radius");
-  p.position = f.read<Vec3>("/state/particles/position");
-  p.velocity = f.read<Vec3>("/state/particles/velocity");
-  p.angular_velocity = f.read<Vec3>("/state/particles/angular_velocity");
-  s.force = f.read<Vec3>("/state/particles/force");
-  s.torque = f.read<Vec3>("/state/particles/torque");
+  read_arrays(f, "/state/particles/", p, particle_arrays);
+  read_arrays(f, "/state/particles/", s, force_arrays);
   const std::size_t n = p.size();
   for (const std::size_t size : {p.material.size(), p.radius.size(), p.position.size(), p.velocity.size(),
                                  p.angular_velocity.size(), s.force.empty() ? n : s.force.size(), s.torque.empty() ? n : s.torque.size()})
@@ -176,25 +203,15 @@ dem::State read_state(const jam::h5::File& f) {
   read_columns(f, "/state/pairs/", s.pairs, pair_columns);
   read_columns(f, "/state/walls/", s.wall_pairs, wall_pair_columns);
   if (f.exists("/state/layout")) {
-    dem::State::Layout& layout = s.layout;
+    Layout& layout = s.layout;
     layout.listed_step = f.attribute<std::uint64_t>("/state/layout", "listed_step");
     layout.skin = f.attribute<double>("/state/layout", "skin");
     layout.odometer = f.attribute<double>("/state/layout", "odometer");
     layout.next_look = f.attribute<double>("/state/layout", "next_look");
-    layout.order = f.read<std::uint32_t>("/state/layout/order");
-    layout.listed = f.read<Vec3>("/state/layout/listed");
-    layout.first = f.read<std::uint32_t>("/state/layout/first");
-    layout.second = f.read<std::uint32_t>("/state/layout/second");
+    read_arrays(f, "/state/layout/", layout, layout_arrays);
     if (f.exists("/state/layout/levels")) {
       layout.foresight = f.attribute<double>("/state/layout/levels", "foresight");
-      layout.closing_jolt = f.read<double>("/state/layout/levels/closing_jolt");
-      layout.grain_level = f.read<std::uint8_t>("/state/layout/levels/grain");
-      layout.block_level = f.read<std::uint8_t>("/state/layout/levels/block");
-      layout.block_wake = f.read<double>("/state/layout/levels/block_wake");
-      layout.wall_grain = f.read<std::uint32_t>("/state/layout/levels/wall_grain");
-      layout.wall = f.read<std::uint32_t>("/state/layout/levels/wall");
-      layout.wall_level = f.read<std::uint8_t>("/state/layout/levels/wall_level");
-      layout.wall_wake = f.read<double>("/state/layout/levels/wall_wake");
+      read_arrays(f, "/state/layout/levels/", layout, level_arrays);
     }
   }
   if (!f.exists("/state/ledger")) return s;

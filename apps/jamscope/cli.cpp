@@ -61,6 +61,16 @@ void add_log_options(CLI::App& command, bool& quiet, LogFormat& format) {
       ->type_name("text|jsonl");
 }
 
+// CLI11's own checks say "not in range 0 to 1.8e308" with all its digits.
+CLI::Validator number_from(double least, bool itself) {
+  return {[least, itself](std::string& text) -> std::string {
+            double value = 0;
+            if (CLI::detail::lexical_cast(text, value) && (value > least || (itself && value == least))) return {};
+            return fmt::format("{} is no number {} {}", text, itself ? "from" : "above", least);
+          },
+          ""};
+}
+
 void add_threads(CLI::App& command, int& threads, const char* doc) {
   command.add_option("-t,--threads", threads, doc)
       ->check(CLI::Range(1, 4096).description(""))
@@ -176,12 +186,15 @@ Command add_bench(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("bench", "measure how fast this machine steps a case, and where the time goes");
   BenchOptions& b = o.bench;
   c.add_option("CASE", b.case_path, "case file (TOML)")->required()->type_name("");
-  c.add_option("--beads", b.beads, "as deep a bed as holds about so many grains")->type_name("N")->check(CLI::PositiveNumber.description(""));
+  c.add_option("--beads", b.beads, "as deep a bed as holds about so many grains")->type_name("N")->check(number_from(0, false));
   c.add_flag("--uniform", b.uniform, "every contact at every step, whatever the case says");
   b.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   add_threads(c, b.threads, "number of threads");
-  c.add_option("--seconds", b.seconds, "how long to measure")->type_name("T")->check(CLI::PositiveNumber.description(""))->capture_default_str();
-  c.add_option("--warm-up", b.warm_up, "how long to run before that, s")->type_name("T")->check(CLI::NonNegativeNumber.description(""))->capture_default_str();
+  const auto add_seconds = [&](const char* name, double& seconds, const char* doc, bool may_be_zero) {
+    c.add_option(name, seconds, doc)->type_name("S")->check(number_from(0, may_be_zero))->capture_default_str();
+  };
+  add_seconds("--seconds", b.seconds, "how long to measure, s", false);
+  add_seconds("--warm-up", b.warm_up, "how long to run before that, s", true);
   add_overrides(c, b.overrides, "--set blade.start_height=\"26 mm\"");
   add_bed_cache(c, b.bed_cache);
   c.add_flag("--json", b.json, "for machines");

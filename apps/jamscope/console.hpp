@@ -39,6 +39,10 @@ std::string progress_json(const Progress& p, double elapsed, double left);
 // "3 h 12 min", "2 min 5 s", "0.4 s".
 std::string duration_text(double seconds);
 
+using Clock = std::chrono::steady_clock;
+// s of wall time.
+double seconds_since(Clock::time_point begin);
+
 class Console {
  public:
   // quiet: warnings only.
@@ -58,7 +62,6 @@ class Console {
   void warning(const std::string& text);
 
  private:
-  using Clock = std::chrono::steady_clock;
   void print(const Progress& p);
   void line(const char* kind, const std::string& text);
   void end_progress_line();

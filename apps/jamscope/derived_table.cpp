@@ -103,8 +103,9 @@ std::vector<DerivedRow> derived_table(const dem::Case& c, const dem::Derived& d)
             fmt::format("and {} rows of series, {} checkpoints", whole(d.series_rows), whole(d.checkpoints)));
   // The rates between which dense runs lie on one core of machines with AVX2 or AVX-512.
   add_plain("cost", "grain steps", d.particle_steps, fmt::format("{:.2g}", d.particle_steps),
-            fmt::format("{} to {} on one core at 5 to 15 million a second", duration_text(d.particle_steps / 5e6),
-                        duration_text(d.particle_steps / 15e6)));
+            fmt::format("{} to {} on one core at 5 to 15 million a second{}", duration_text(d.particle_steps / 5e6),
+                        duration_text(d.particle_steps / 15e6),
+                        c.levels > 0 ? ", less what contacts at their own rate save (jamscope bench)" : ""));
   add("cost", "disk", d.bytes_on_disk, "B", "estimate, compressed");
   return rows;
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 
 #include "apps/jamscope/checkpoint.hpp"
@@ -10,8 +9,6 @@
 
 namespace jamscope {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 std::string bed_text(const dem::BedReport& r) {
   return fmt::format(
@@ -58,7 +55,7 @@ dem::SettledBed settled_bed(const CaseFile& file, const dem::Scene& scene, const
   } catch (const dem::BedInterrupted&) {
     throw Interrupted{};
   }
-  console.note(fmt::format("bed settled in {}, {:.2g} grain steps: {}", duration_text(std::chrono::duration<double>(Clock::now() - begin).count()),
+  console.note(fmt::format("bed settled in {}, {:.2g} grain steps: {}", duration_text(seconds_since(begin)),
                            bed.report.grain_steps, bed_text(bed.report)));
   if (!path.empty()) {
     try {

@@ -28,9 +28,6 @@
 namespace jamscope {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
 // How many steps lie between two records; at least one.
 std::uint64_t steps_in(double interval, double step) {
   return std::uint64_t(std::max(1.0, std::round(interval / step)));
@@ -63,7 +60,8 @@ class Run {
   void resume() {
     Checkpoint checkpoint = read_checkpoint(restart());
     if (checkpoint.case_sha256 != sha_)
-      throw UsageError(fmt::format("{}: belongs to another case, expected case_sha256 {}, got {}", restart(), sha_, checkpoint.case_sha256));
+      throw UsageError(fmt::format("{}: belongs to another case, expected case_sha256 {}, got {}", restart(), sha_,
+                                   checkpoint.case_sha256));
     writer_.emplace(jam::SnapshotWriter::resume(snapshots(), checkpoint.state.step));
     info_ = writer_->info();
     const jam::SnapshotSource stored = jam::open_jamscope_file(snapshots());
@@ -166,6 +164,7 @@ class Run {
 
   Progress progress(double end) const {
     Progress p;
+    // Not assigned from literals: GCC 12 then warns of overlapping copies (its bug 105329).
     p.stage = std::string("simulate");
     p.unit = std::string("s");
     p.done = simulation_->time();

@@ -225,28 +225,28 @@ std::vector<std::pair<std::string, Section>> Section::named_sections() {
 }
 
 bool Section::quantity(std::string_view key, const Dimension& dimension, double& out, Need need) {
+  return quantity_or({}, nullptr, key, dimension, out, need);
+}
+
+bool Section::quantity_or(std::string_view word, bool* is_word, std::string_view key, const Dimension& dimension, double& out,
+                          Need need) {
   const toml::node* node = find(key, need);
   if (!node) return false;
+  const std::string instead = is_word ? fmt::format(", or \"{}\"", word) : "";
   const auto* text = node->as_string();
   if (!text)
-    return wrong_type(key, fmt::format("{} with its unit, for example \"{}\"", dimension.name, dimension.example),
+    return wrong_type(key, fmt::format("{} with its unit, for example \"{}\"{}", dimension.name, dimension.example, instead),
                       *node);
+  if (is_word) {
+    *is_word = text->get() == word;
+    if (*is_word) return true;
+  }
   try {
     out = to_si(text->get(), dimension);
   } catch (const UnitError& error) {
-    document_->problem(dotted(key), fmt::format("'{}' {}", key, error.what()));
+    document_->problem(dotted(key), fmt::format("'{}' {}{}", key, error.what(), instead));
     return false;
   }
-  return true;
-}
-
-bool Section::quantity_or(std::string_view word, bool& is_word, std::string_view key, const Dimension& dimension, double& out,
-                          Need need) {
-  const toml::node* node = table_ ? table_->get(key) : nullptr;
-  const auto* text = node ? node->as_string() : nullptr;
-  is_word = text && text->get() == word;
-  if (!is_word) return quantity(key, dimension, out, need);
-  find(key, need);
   return true;
 }
 

@@ -87,7 +87,7 @@ class Section {
 
   bool quantity(std::string_view key, const Dimension& dimension, double& out, Need need = Need::required);
   // A quantity, or one word instead: `is_word` says which.
-  bool quantity_or(std::string_view word, bool& is_word, std::string_view key, const Dimension& dimension, double& out,
+  bool quantity_or(std::string_view word, bool* is_word, std::string_view key, const Dimension& dimension, double& out,
                    Need need = Need::required);
   bool quantities(std::string_view key, const Dimension& dimension, std::vector<double>& out,
                   Need need = Need::required);

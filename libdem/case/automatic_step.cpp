@@ -9,12 +9,12 @@
 namespace dem {
 namespace {
 
-// s, the largest time of which all intervals are whole multiples; to a picosecond.
+// s, the largest time of which all intervals are whole multiples; to a picosecond, 0 where one is shorter than that.
 double common_interval(const Case& c) {
   constexpr double unit = 1e-12;
   std::int64_t common = 0;
   for (const double interval : {c.duration, c.output.frame_interval, c.output.series_interval, c.output.checkpoint_interval})
-    common = std::gcd(common, std::llround(interval / unit));
+    common = std::gcd(common, std::llround(std::min(interval / unit, 9e18)));
   return double(common) * unit;
 }
 
@@ -35,7 +35,8 @@ StepChoice choose_steps(const Case& c) {
   choice.stiffest = c.accuracy * squeezed;
   choice.softest = std::max(2 * c.accuracy / omega, choice.stiffest);
   const double common = common_interval(c);
-  const double longest = common / std::ceil(common / choice.softest);
+  double longest = std::min(choice.softest, choice.stiffest * double(1U << most_levels));
+  if (common > 0) longest = common / std::ceil(common / longest);
   choice.levels = std::uint8_t(std::clamp(std::ceil(std::log2(longest / choice.stiffest)), 0.0, double(most_levels)));
   choice.step = longest / double(1U << choice.levels);
   return choice;

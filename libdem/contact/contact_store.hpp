@@ -21,20 +21,6 @@ struct ContactMemory {
   std::uint64_t birth_step = 0;
 };
 
-// How many contacts were evaluated, blocks of pairs (of eight lanes) and touches of walls; and how many it would have been if all
-// had been at every step.
-struct Evaluations {
-  std::uint64_t blocks = 0, blocks_at_every_step = 0;
-  std::uint64_t touches = 0, touches_at_every_step = 0;
-  Evaluations& operator+=(const Evaluations& more) {
-    blocks += more.blocks;
-    blocks_at_every_step += more.blocks_at_every_step;
-    touches += more.touches;
-    touches_at_every_step += more.touches_at_every_step;
-    return *this;
-  }
-};
-
 struct PairForce {
   Vec3 tangential;          // N on the first grain
   double elastic, damping;  // N along the normal, > 0 pushes apart

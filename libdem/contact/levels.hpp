@@ -82,4 +82,18 @@ inline std::uint8_t next_level(std::uint8_t level, std::uint8_t due, std::uint8_
   return level;
 }
 
+// How many contacts were evaluated, blocks of pairs (of eight lanes) and touches of walls; and how many it would have been if all
+// had been at every step.
+struct Evaluations {
+  std::uint64_t blocks = 0, blocks_at_every_step = 0;
+  std::uint64_t touches = 0, touches_at_every_step = 0;
+  Evaluations& operator+=(const Evaluations& more) {
+    blocks += more.blocks;
+    blocks_at_every_step += more.blocks_at_every_step;
+    touches += more.touches;
+    touches_at_every_step += more.touches_at_every_step;
+    return *this;
+  }
+};
+
 }  // namespace dem

@@ -26,6 +26,11 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
+template <class... Value>
+std::size_t bytes_of(const std::vector<Value>&... values) {
+  return ((values.capacity() * sizeof(Value)) + ...);
+}
+
 class Stopwatch {
  public:
   // s, the time since the last call.
@@ -232,7 +237,7 @@ struct Simulation::Engine {
     chunk_level.assign(chunks_of(size()), 0);  // all are due where lists are built
     chunk_speed.assign(chunks_of(size()), 0.0);
     chunk_jolt.assign(chunks_of(size()), 0.0);
-    closing_jolt.assign(chunks_of(size()), 0.0);
+    closing_jolt.assign(chunks_of(size()), largest(closing_jolt));  // whose grains are in other chunks now
     find_due();
   }
 
@@ -593,6 +598,16 @@ const Particles& Simulation::particles() const { return engine_->grains.caller; 
 double Simulation::kinetic_energy() const { return engine_->kinetic_energy(); }
 Ledger Simulation::ledger() const { return engine_->ledger(); }
 const Effort& Simulation::effort() const { return engine_->effort; }
+std::size_t Simulation::bytes() const {
+  const Engine& e = *engine_;
+  const GrainStore& g = e.grains;
+  const Particles& p = g.caller;
+  return bytes_of(p.id, p.material, p.radius, p.position, p.velocity, p.angular_velocity, g.caller_mass, g.caller_inertia) +
+         bytes_of(g.order, g.row_of, g.rows, g.forces, g.mass, g.inertia, g.material, g.id, g.listed, g.level, g.asked, e.kick, e.turn) +
+         bytes_of(e.pairs.block, e.pairs.head, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.result, e.pairs.crossing,
+                  e.pairs.incoming, e.pairs.chunk) +
+         bytes_of(e.walls.candidate, e.walls.parts, e.walls.chunk, e.walls.chunk_begin);
+}
 double Simulation::stable_step() const { return dem::stable_step(engine_->guarded()); }
 
 std::size_t Simulation::contacts() const {

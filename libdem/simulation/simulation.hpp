@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "libdem/case/case.hpp"
-#include "libdem/contact/contact_store.hpp"
 #include "libdem/contact/laws.hpp"
+#include "libdem/contact/ledger.hpp"
 #include "libdem/contact/levels.hpp"
+#include "libdem/contact/wall_load.hpp"
+#include "libdem/geometry/walls.hpp"
 #include "libdem/particles/particles.hpp"
 
 namespace dem {
@@ -208,6 +210,7 @@ class Simulation {
   // where nothing touches. Costs a pass over the contacts.
   double stable_step() const;
   const Effort& effort() const;
+  std::size_t bytes() const;  // that grains, contacts and lists occupy
   State state() const;
   View view() const;
   Window take_window();

@@ -150,7 +150,10 @@ TEST(CaseFile, AnAutomaticStepFollowsFromTheContactsAndDividesEveryInterval) {
 
   EXPECT_THAT(message(text, {"run.levels=3"}), HasSubstr("'levels' follow from step = \"auto\""));
   EXPECT_THAT(message(text, {"run.accuracy=0.7"}), HasSubstr("must lie above 0 and be at most 0.5"));
-  EXPECT_THAT(message(replaced("\"5e-8 s\"", "\"automatic\"")), HasSubstr("step"));
+  EXPECT_THAT(message(replaced("\"5e-8 s\"", "\"automatic\"")), HasSubstr("got 'automatic', which does not begin with a number, or \"auto\""));
+  // Too short to be divided, too long to be counted: an error, not a step.
+  EXPECT_THAT(message(text, {"run.duration=1e-13 s"}), HasSubstr("'duration' must be a whole number of steps"));
+  EXPECT_NE(message(text, {"run.duration=1e30 s"}), "");
   EXPECT_THAT(message(good, {"run.levels=11"}), HasSubstr("must be at most 10"));
   EXPECT_THAT(message(good, {"run.levels=7"}), HasSubstr("after which all contacts meet"));
 }

@@ -146,12 +146,6 @@ TEST(Levels, ASqueezedGrainIsThatOfAFineStep) {
   EXPECT_NEAR(found.duration, right.duration, 0.005 * right.duration + 8.1e-7);
 }
 
-dem::Setup stirred_pot_with_levels() {
-  dem::Setup setup = with_levels(support::stirred_pot());
-  setup.step = 5e-8;
-  return setup;
-}
-
 TEST(Levels, FreeGrainsKeepTheirMomentum) {
   omp_set_num_threads(1);
   dem::Setup setup = with_levels(support::glass_setup());
@@ -176,7 +170,7 @@ TEST(Levels, FreeGrainsKeepTheirMomentum) {
 
 TEST(Levels, TheLedgerClosesAndTheNumericalErrorStaysSmall) {
   omp_set_num_threads(1);
-  Simulation sim(stirred_pot_with_levels(), fresh(support::grains_below_the_paddle()));
+  Simulation sim(with_levels(support::stirred_pot()), fresh(support::grains_below_the_paddle()));
   Simulation uniform(support::stirred_pot(), fresh(support::grains_below_the_paddle()));
   sim.advance(20000);
   uniform.advance(20000);
@@ -210,7 +204,7 @@ void expect_same(const State& a, const State& b) {
 }
 
 TEST(Levels, AnyNumberOfThreadsAndAnyRestartGiveTheSameBytes) {
-  dem::Setup setup = stirred_pot_with_levels();
+  dem::Setup setup = with_levels(support::stirred_pot());
   std::vector<State> ends;
   for (const int threads : {1, 2, 3}) {
     omp_set_num_threads(threads);

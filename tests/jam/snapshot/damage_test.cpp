@@ -96,6 +96,7 @@ TEST_F(DamagedFile, AKillDuringAppendLosesAtMostTheOpenFrame) {
     // The child reports each finished append with one byte.
     std::array<int, 2> pipe_ends{};
     ASSERT_EQ(pipe(pipe_ends.data()), 0);
+    const auto begin = std::chrono::steady_clock::now();
     const pid_t child = in_child([&] {
       SnapshotWriter writer = SnapshotWriter::create(path, sample::info());
       for (std::size_t k = 0;; ++k) {
@@ -106,7 +107,10 @@ TEST_F(DamagedFile, AKillDuringAppendLosesAtMostTheOpenFrame) {
     close(pipe_ends[1]);
     char byte = 0;
     ASSERT_EQ(read(pipe_ends[0], &byte, 1), 1);  // the first frame is there
-    std::this_thread::sleep_for(std::chrono::microseconds(random() % 40000));
+    // Long enough for a few more, however slow the machine: the first took `once` with the making of the file.
+    const auto once = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin);
+    const std::int64_t longest = std::max<std::int64_t>(40000, 3 * once.count());
+    std::this_thread::sleep_for(std::chrono::microseconds(std::int64_t(random()) % longest));
     kill(child, SIGKILL);
     EXPECT_EQ(exit_code(child), -1);
     std::size_t reported = 1;

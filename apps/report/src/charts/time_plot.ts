@@ -141,7 +141,7 @@ function options(spec: TimePlot, log: boolean, width: number, view: TimeView): u
   return {
     width,
     height,
-    padding: [10, 14, null, null],
+    padding: [10, 22, null, null],  // right: half of the last time label
     scales: { x: { time: false }, y: { distr: log ? 3 : 1, log: 10, range } },
     axes: [
       { ...axis, label: 'Time (s)', labelSize: 18, size: 34, values: (_p, at, _a, _s, step) => at.map((v) => v.toFixed(decimals(step)).replace('-', '−')) },
