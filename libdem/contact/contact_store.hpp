@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "libdem/contact/ledger.hpp"
@@ -22,9 +23,10 @@ struct ContactMemory {
 };
 
 struct PairForce {
+  std::uint32_t lane;
+  bool sliding;
   Vec3 tangential;          // N on the first grain
   double elastic, damping;  // N along the normal, > 0 pushes apart
-  bool sliding;
 };
 
 // Pairs of grains that touch or may touch before the list is built again, in blocks of eight lanes. A pair keeps its lane until
@@ -36,7 +38,7 @@ struct PairContacts {
     std::array<std::uint32_t, width> first, second;                             // rows of grains
     std::array<Column, 3> spring{};                                             // m, tangential
     Column contact_radius{};                                                    // m, as in ContactMemory
-    Column effective_radius{}, effective_mass{}, effective_inertia{}, adhesion_length{};  // as in PairConstants
+    std::array<Column, constants_per_contact> constant{};                       // of the table contact_constants
   };
   struct alignas(64) RollingSprings {
     std::array<Column, 3> torque{};  // N m, elastic part of the one on the first grain
@@ -57,7 +59,6 @@ struct PairContacts {
   std::vector<std::uint64_t> birth_step;      // [lanes]
   std::vector<RollingSprings> rolling;        // [blocks] empty where the law has none
   std::vector<LastForces> last;               // [lanes] empty where no ledger is kept
-  std::vector<PairForce> result;              // [lanes] of the last evaluation that recorded
   // Of pairs whose second grain belongs to another chunk: what acts on it. And for each chunk which those are.
   std::vector<ForceRow> crossing;
   struct Incoming {
@@ -73,6 +74,7 @@ struct PairContacts {
     double largest_overlap = 0;  // over the smaller radius
     LedgerSums ledger;
     Evaluations evaluations;
+    std::vector<PairForce> recorded;  // by lane, of the last evaluation that recorded
   };
   std::vector<Chunk> chunk;
 
@@ -86,7 +88,6 @@ struct PairContacts {
 struct WallContact {
   ContactMemory memory;
   Vec3 rolling = Vec3::Zero();  // N m, elastic rolling torque on the particle
-  LastForces last;
   WallTouch touch{};
   Vec3 tangential;          // N on the particle
   double elastic, damping;  // N
@@ -99,18 +100,22 @@ struct WallCandidate {
   static constexpr std::size_t capacity = 8;  // touches of one sphere with one wall; more stop the run
   std::uint32_t particle, wall;
   std::uint32_t part_begin, part_end;  // rows of WallContacts::parts: triangles, glued grains
-  std::uint32_t size = 0;
+  // Rows of WallContacts::contact: `size` of them are in use, sorted by feature, and there is room for so many. A wall without
+  // parts touches in one place, others in no more places than they have parts here.
+  std::uint32_t contact_begin = 0;
+  std::uint16_t size = 0, room = 0;
   std::uint8_t level = 0;  // this and the next three as in PairContacts::Head
   bool asleep = true;
   double wake = -std::numeric_limits<double>::infinity();  // m
   LevelScale scale;
   PairConstants<double> constants;
-  std::array<WallContact, capacity> contact;  // the first `size`, sorted by feature
 };
 
 struct WallContacts {
   std::vector<WallCandidate> candidate;  // sorted by chunk of the grain, wall, grain
   std::vector<std::uint32_t> parts;
+  std::vector<WallContact> contact;
+  std::vector<LastForces> last;  // of each contact; empty where no ledger is kept
   // Candidates are handled in chunks of one wall and one chunk of grains, whose loads are added in order.
   struct Chunk {
     std::uint32_t wall = 0, begin = 0, end = 0;
@@ -130,6 +135,8 @@ struct WallContacts {
   std::vector<Chunk> chunk;
   std::vector<std::uint32_t> chunk_begin;  // [chunks of grains + 1] rows of `chunk`
   double skin = 0;                         // m, how far beyond a grain's surface the candidate parts reach
+
+  std::span<const WallContact> contacts(const WallCandidate& c) const { return {&contact[c.contact_begin], c.size}; }
 };
 
 }  // namespace dem

@@ -61,24 +61,18 @@ inline void store(const Triple<Pack>& values, std::array<PairContacts::Column, 3
   store(values.z, columns[2], lane);
 }
 
-// Constants that depend on the materials alone.
-template <class Get>
-PairConstants<Pack> each_material(Get get) {
-  const auto each = [&](auto member) { return get(member); };
-  using C = PairConstants<double>;
-  PairConstants<Pack> c;
-  c.effective_modulus = each(&C::effective_modulus);
-  c.effective_shear = each(&C::effective_shear);
-  c.normal_damping = each(&C::normal_damping);
-  c.tangential_damping = each(&C::tangential_damping);
-  c.friction = each(&C::friction);
-  c.rolling_friction = each(&C::rolling_friction);
-  c.rolling_damping = each(&C::rolling_damping);
-  c.work_of_adhesion = each(&C::work_of_adhesion);
-  return c;
+// Each constant of a table is get(its number in it).
+template <std::size_t N, class Get>
+void fill(PairConstants<Pack>& c, const std::array<Pack PairConstants<Pack>::*, N>& table, Get get) {
+  for (std::size_t m = 0; m < N; ++m) c.*table[m] = get(m);
 }
-PairConstants<Pack> all_lanes(const PairConstants<double>& materials) {
-  return each_material([&](auto member) { return Pack(materials.*member); });
+PairConstants<Pack> constants_of_lanes(const MaterialTable& materials, const PairContacts& pairs, std::size_t number,
+                                       std::size_t lane) {
+  PairConstants<Pack> c;
+  const PairConstants<double>& kind = materials.pair[pairs.head[number].material_pair];
+  fill(c, material_constants<Pack>, [&](std::size_t m) { return Pack(kind.*material_constants<double>[m]); });
+  fill(c, contact_constants<Pack>, [&](std::size_t m) { return load(pairs.block[number].constant[m], lane); });
+  return c;
 }
 
 // One block's parts in ledger.hpp but for the second half of (1). `get(k)` gives lane k's LastForces; lanes from `count` on book
@@ -197,7 +191,6 @@ struct Approach {
 template <class Law>
 JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number) {
   const Block& block = pairs.block[number];
-  PairConstants<Pack> c = all_lanes(in.materials.pair[pairs.head[number].material_pair]);
   Approach approach{std::numeric_limits<double>::infinity(), false, {}};
   const double jolt = levels_in_use(in) ? jolt_of(in, block) : 0;
   for (std::size_t lane = 0; lane < PairContacts::width; lane += pack_width) {
@@ -206,8 +199,7 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
     const auto place_i = load_quads([&](std::size_t k) { return i(k).place.data(); });
     const auto place_j = load_quads([&](std::size_t k) { return j(k).place.data(); });
     const Triple<Pack> branch{place_j[0] - place_i[0], place_j[1] - place_i[1], place_j[2] - place_i[2]};
-    c.effective_radius = load(block.effective_radius, lane);
-    c.adhesion_length = load(block.adhesion_length, lane);
+    const PairConstants<Pack> c = constants_of_lanes(in.materials, pairs, number, lane);
     const Pack form = with_part<NormalLaws>(law.normal, [&](auto part) -> Pack { return part.form_overlap(c); });
     const Pack distance = square_root(dot(branch, branch)), gap = distance - place_i[3] - place_j[3] + form;
     approach.gap = std::min(approach.gap, double(std::experimental::hmin(gap)));
@@ -242,11 +234,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
 
   LaneTouch r;
   PairConstants<Pack>& c = r.constants;
-  c = all_lanes(in.materials.pair[pairs.head[number].material_pair]);
-  c.effective_radius = load(block.effective_radius, lane);
-  c.effective_mass = load(block.effective_mass, lane);
-  c.effective_inertia = load(block.effective_inertia, lane);
-  c.adhesion_length = load(block.adhesion_length, lane);
+  c = constants_of_lanes(in.materials, pairs, number, lane);
 
   const Triple<Pack> branch{x_j - x_i, y_j - y_i, z_j - z_i};
   const Pack distance = square_root(dot(branch, branch));
@@ -270,7 +258,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
 template <class Law, bool Keep>
 inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::size_t lane,
                            const LaneTouch& lanes, double advance, double steps, bool crosses, const ForceOutput& out,
-                           Pack& largest_overlap, LedgerSums& sums) {
+                           Pack& largest_overlap, LedgerSums& sums, std::vector<PairForce>& recorded) {
   Block& block = pairs.block[number];
   const Touch<Pack>& touch = lanes.touch;
   const PairConstants<Pack>& c = lanes.constants;
@@ -279,7 +267,7 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   if (rolling_spring) springs.rolling = load(pairs.rolling[number].torque, lane);
   const Mask<Pack> touched = springs.contact_radius > Pack(0.0);
   const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
-  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Pack(advance));
+  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Interval<Pack>(advance, 1 / advance));
 
   store(only(hold, springs.tangential), block.spring, lane);
   store(only(hold, springs.contact_radius), block.contact_radius, lane);
@@ -314,7 +302,8 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   if (in.record)
     for (std::size_t k = 0; k < pack_width; ++k)
       if (hold[k])
-        pairs.result[first_lane + k] = {lane_of(tangential, k), f.normal.elastic[k], f.damping[k], f.tangential.sliding[k]};
+        recorded.push_back({std::uint32_t(first_lane + k), f.tangential.sliding[k], lane_of(tangential, k), f.normal.elastic[k],
+                            f.damping[k]});
   return any_of(hold);
 }
 
@@ -322,7 +311,8 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
 // not since it was looked at last.
 template <class Law, bool Keep>
 JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, bool woken,
-                                     bool crosses, const ForceOutput& out, Pack& largest_overlap, LedgerSums& sums) {
+                                     bool crosses, const ForceOutput& out, Pack& largest_overlap, LedgerSums& sums,
+                                     std::vector<PairForce>& recorded) {
   constexpr std::size_t packs = PairContacts::width / pack_width;
   const Block& block = pairs.block[number];
   PairContacts::Head& head = pairs.head[number];
@@ -344,7 +334,7 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
   head.acts = false;
   for (std::size_t p = 0; p < packs; ++p)
     head.acts |= evaluate_lanes<Law, Keep>(law, in, pairs, number, p * pack_width, lanes[p], advance, steps, crosses, out,
-                                           largest_overlap, sums);
+                                           largest_overlap, sums, recorded);
 }
 
 template <class Law, bool Keep>
@@ -353,6 +343,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
   Pack largest_overlap = 0.0;
   LedgerSums sums;
   Evaluations evaluations;
+  if (in.record) chunk.recorded.clear();
   for (std::uint32_t b = chunk.begin; b < chunk.end; ++b) {
     PairContacts::Head& head = pairs.head[b];
     const bool crosses = b >= chunk.inner_end, woken = !head.acts && head.asleep;
@@ -376,7 +367,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
     } else if (head.level > in.due) {
       continue;
     }
-    evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums);
+    evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk.recorded);
     head.wake = in.odometer;
     evaluations += {1, std::uint64_t{1} << head.level, 0, 0};
   }
@@ -388,9 +379,8 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
 // A contact that its wall no longer has: it broke, or its feature gave way to another while it was loaded and what it stored
 // is lost. `advance`, s, is the time since its last evaluation.
 template <class Law>
-void book_end(const Law& law, const WallContact& contact, const PairConstants<double>& c, const GrainRow& grain, double advance,
-              LedgerSums& sums) {
-  const LastForces& last = contact.last;
+void book_end(const Law& law, const WallContact& contact, const LastForces& last, const PairConstants<double>& c,
+              const GrainRow& grain, double advance, LedgerSums& sums) {
   const Vec3 u = grain.velocity() + (last.arm_i * grain.angular_velocity()).cross(last.normal) - last.wall_velocity;
   const double expected_overlap = grain.radius() - contact.touch.distance + advance * u.dot(last.normal);
   const auto [break_overlap, break_energy] = with_part<NormalLaws>(
@@ -402,38 +392,39 @@ void book_end(const Law& law, const WallContact& contact, const PairConstants<do
   sums.time_stepping += last.energy().total() - detachment;
 }
 
-void take_over(WallContact& contact, const WallContact& from) {
-  contact.memory = from.memory;
-  contact.rolling = from.rolling;
-  contact.last = from.last;
-}
-
 // Carries memory from the places a grain touched in the last step to those it touches now: first the same feature, then,
 // where the grain rolled from one feature to its neighbour, the remaining place with the most similar normal. Calls
-// ended(contact) for formed contacts that nothing inherits.
+// ended(contact, its last forces) for formed contacts that nothing inherits.
 template <class Ended>
-void inherit(WallCandidate& candidate, const std::vector<WallTouch>& touches, Ended ended) {
+void inherit(WallContacts& walls, WallCandidate& candidate, const std::vector<WallTouch>& touches, Ended ended) {
   const std::size_t old_size = candidate.size;
-  if (old_size == 1 && touches.size() == 1 && candidate.contact[0].touch.feature == touches[0].feature) {
-    candidate.contact[0].touch = touches[0];
+  WallContact* const now = &walls.contact[candidate.contact_begin];
+  LastForces* const last = walls.last.empty() ? nullptr : &walls.last[candidate.contact_begin];
+  if (old_size == 1 && touches.size() == 1 && now[0].touch.feature == touches[0].feature) {
+    now[0].touch = touches[0];
     return;
   }
   std::array<WallContact, WallCandidate::capacity> old;
-  std::copy_n(candidate.contact.begin(), old_size, old.begin());
+  std::array<LastForces, WallCandidate::capacity> old_last;
   std::array<bool, WallCandidate::capacity> taken{};
-  candidate.size = std::uint32_t(touches.size());
+  std::copy_n(now, old_size, old.begin());
+  if (last) std::copy_n(last, old_size, old_last.begin());
+  const auto take_over = [&](std::size_t k, std::size_t o) {
+    now[k].memory = old[o].memory;
+    now[k].rolling = old[o].rolling;
+    if (last) last[k] = old_last[o];
+    taken[o] = true;
+  };
+  candidate.size = std::uint16_t(touches.size());
   for (std::size_t k = 0; k < touches.size(); ++k) {
-    candidate.contact[k] = WallContact{};
-    candidate.contact[k].touch = touches[k];
+    now[k] = WallContact{};
+    now[k].touch = touches[k];
+    if (last) last[k] = LastForces{};
     for (std::size_t o = 0; o < old_size; ++o)
-      if (!taken[o] && old[o].touch.feature == touches[k].feature) {
-        take_over(candidate.contact[k], old[o]);
-        taken[o] = true;
-      }
+      if (!taken[o] && old[o].touch.feature == touches[k].feature) take_over(k, o);
   }
   for (std::size_t k = 0; k < touches.size(); ++k) {
-    WallContact& contact = candidate.contact[k];
-    if (contact.acts()) continue;
+    if (now[k].acts()) continue;
     std::size_t best = old_size;
     double similarity = 0.9;
     for (std::size_t o = 0; o < old_size; ++o) {
@@ -443,13 +434,10 @@ void inherit(WallCandidate& candidate, const std::vector<WallTouch>& touches, En
         best = o;
       }
     }
-    if (best < old_size) {
-      take_over(contact, old[best]);
-      taken[best] = true;
-    }
+    if (best < old_size) take_over(k, best);
   }
   for (std::size_t o = 0; o < old_size; ++o)
-    if (!taken[o] && old[o].acts()) ended(old[o]);
+    if (!taken[o] && old[o].acts()) ended(old[o], old_last[o]);
 }
 
 PairConstants<double> constants_of(const ForceInput& in, const WallCandidate& candidate, const WallContact& contact) {
@@ -461,14 +449,14 @@ template <class Law>
 double last_overlap(const Law& law, const ForceInput& in, const WallCandidate& candidate) {
   if (!in.wall_curvature) return last_overlap(law, candidate.constants);
   PairConstants<double> most = candidate.constants;
-  most.effective_radius *= conforming;
-  most.adhesion_length *= std::cbrt(conforming);
+  set_adhesion(most, most.effective_radius * conforming);
   return last_overlap(law, most);
 }
 
 struct WallSlot {
   WallCandidate* candidate;
   WallContact* contact;
+  LastForces* last;  // where a ledger is kept
   double advance;  // s
   double steps;    // of the impulse
 };
@@ -480,18 +468,20 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   const WallPose& pose = in.poses[chunk.wall];
   const auto grain = [&](std::size_t k) -> const GrainRow& { return in.grains[slot[k].candidate->particle]; };
 
-  PairConstants<Pack> c =
-      each_material([&](auto member) { return gather([&](std::size_t k) { return slot[k].candidate->constants.*member; }); });
-  c.effective_radius = gather([&](std::size_t k) { return slot[k].candidate->constants.effective_radius; });
-  c.effective_mass = gather([&](std::size_t k) { return slot[k].candidate->constants.effective_mass; });
-  c.effective_inertia = gather([&](std::size_t k) { return slot[k].candidate->constants.effective_inertia; });
-  c.adhesion_length = gather([&](std::size_t k) { return slot[k].candidate->constants.adhesion_length; });
-  if (in.wall_curvature)
-    for (std::size_t k = 0; k < pack_width; ++k) {
-      const PairConstants<double> curved = constants_of(in, *slot[k].candidate, *slot[k].contact);
-      c.effective_radius[k] = curved.effective_radius;
-      c.adhesion_length[k] = curved.adhesion_length;
-    }
+  std::array<const PairConstants<double>*, pack_width> constants;
+  std::array<PairConstants<double>, pack_width> curved;
+  for (std::size_t k = 0; k < pack_width; ++k) {
+    constants[k] = &slot[k].candidate->constants;
+    if (!in.wall_curvature) continue;
+    curved[k] = constants_of(in, *slot[k].candidate, *slot[k].contact);
+    constants[k] = &curved[k];
+  }
+  PairConstants<Pack> c;
+  const auto gather_from = [&](const auto& table) {
+    return [&](std::size_t m) { return gather([&](std::size_t k) { return constants[k]->*table[m]; }); };
+  };
+  fill(c, material_constants<Pack>, gather_from(material_constants<double>));
+  fill(c, contact_constants<Pack>, gather_from(contact_constants<double>));
 
   const auto [x, y, z, radius] = load_quads([&](std::size_t k) { return grain(k).place.data(); });
   const auto [v_x, v_y, v_z, inverse_radius] = load_quads([&](std::size_t k) { return grain(k).motion.data(); });
@@ -514,7 +504,8 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
                         gather([&](std::size_t k) { return slot[k].contact->memory.contact_radius; })};
   const Mask<Pack> touched = springs.contact_radius > Pack(0.0);
   const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
-  const ContactForce<Pack> f = evaluate(law, touch, c, springs, gather([&](std::size_t k) { return slot[k].advance; }));
+  const ContactForce<Pack> f = evaluate(law, touch, c, springs,
+                                        Interval<Pack>(gather([&](std::size_t k) { return slot[k].advance; })));
   const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
   const Pack pushed = f.normal.elastic + f.damping;
   const Triple<Pack> force = tangential - touch.normal * pushed;
@@ -523,7 +514,7 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   if constexpr (Keep)
     book(law, touch, c, f, hold, touched, velocity, true, wall_velocity,
          gather([&](std::size_t k) { return slot[k].steps * in.step_length; }), count,
-         [&](std::size_t k) -> LastForces& { return slot[k].contact->last; }, sums);
+         [&](std::size_t k) -> LastForces& { return *slot[k].last; }, sums);
 
   for (std::size_t k = 0; k < count; ++k) {
     WallContact& contact = *slot[k].contact;
@@ -572,10 +563,9 @@ void choose_level(const ForceInput& in, WallCandidate& candidate, const Demand& 
   asked = std::min(asked, candidate.level);
 }
 
-Demand demand_of(const WallCandidate& candidate, const GrainRow& grain, const WallPose& pose) {
+Demand demand_of(const WallContacts& walls, const WallCandidate& candidate, const GrainRow& grain, const WallPose& pose) {
   Demand demand;
-  for (std::size_t t = 0; t < candidate.size; ++t) {
-    const WallContact& contact = candidate.contact[t];
+  for (const WallContact& contact : walls.contacts(candidate)) {
     const double radius = contact.memory.contact_radius, speed = normal_speed(grain, pose, contact.touch);
     demand.radius = std::max(demand.radius, radius);
     demand.speed = std::max(demand.speed, speed);
@@ -630,24 +620,25 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       }
       std::erase_if(touches, [&](const WallTouch& touch) { return touch.distance > reach; });
     }
-    if (touches.size() > WallCandidate::capacity) {
+    if (touches.size() > candidate.room) {
       chunk.overflow = true;
-      touches.resize(WallCandidate::capacity);
+      touches.resize(candidate.room);
     }
     const std::uint8_t before = candidate.level;
-    inherit(candidate, touches, [&](const WallContact& ended) {
+    inherit(walls, candidate, touches, [&](const WallContact& ended, const LastForces& last) {
       if constexpr (Keep)
-        book_end(law, ended, constants_of(in, candidate, ended), grain, advance_of(in, before), chunk.ledger);
+        book_end(law, ended, last, constants_of(in, candidate, ended), grain, advance_of(in, before), chunk.ledger);
     });
     if (candidate.size == 0) candidate.wake = in.odometer;
     double steps = 1;
     if (levels_in_use(in)) {
-      choose_level(in, candidate, demand_of(candidate, grain, pose), levels_above_contacts, out);
+      choose_level(in, candidate, demand_of(walls, candidate, grain, pose), levels_above_contacts, out);
       steps = impulse_steps(woken ? candidate.level : before, candidate.level);
     }
     chunk.evaluations += {0, 0, candidate.size, std::uint64_t{candidate.size} << candidate.level};
     for (std::size_t t = 0; t < candidate.size; ++t) {
-      slot[count++] = {&candidate, &candidate.contact[t], advance_of(in, woken ? 0 : before), steps};
+      const std::size_t row = candidate.contact_begin + t;
+      slot[count++] = {&candidate, &walls.contact[row], Keep ? &walls.last[row] : nullptr, advance_of(in, woken ? 0 : before), steps};
       if (count == pack_width) {
         block();
         count = 0;
@@ -732,9 +723,9 @@ void book_second_half(const ForceInput& in, PairContacts& pairs, const WallConta
       for (std::uint32_t q = walls.chunk[w].begin; q < walls.chunk[w].end; ++q) {
         const WallCandidate& c = walls.candidate[q];
         const GrainRow& grain = in.grains[c.particle];
-        for (std::size_t k = 0; k < c.size && c.level <= in.due; ++k) {
-          const LastForces& last = c.contact[k].last;
-          if (c.contact[k].acts()) chunk.ledger += half_of_work(last, grain.velocity(), grain.angular_velocity(), last.wall_spin);
+        for (std::size_t k = c.contact_begin; k < c.contact_begin + c.size && c.level <= in.due; ++k) {
+          const LastForces& last = walls.last[k];
+          if (walls.contact[k].acts()) chunk.ledger += half_of_work(last, grain.velocity(), grain.angular_velocity(), last.wall_spin);
         }
       }
   }

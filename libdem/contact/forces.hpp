@@ -14,7 +14,7 @@ struct ForceInput {
   std::uint64_t step;
   double odometer;  // m, upper bound of how far any two bodies have come nearer since the run began
   bool wall_curvature = false;  // walls' curvature enters the effective radius; else they are flat where they are touched
-  bool record = false;          // fill PairContacts::result
+  bool record = false;          // fill PairContacts::Chunk::recorded
   bool look = false;            // springs do not advance: forces of an instant
   // Levels (levels.hpp). Grains whose level is due are all at this step; what is evaluated has no others.
   std::uint8_t due = 0, highest = 0;

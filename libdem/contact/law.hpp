@@ -50,7 +50,7 @@ concept TangentialLaw = requires(const Touch<double>& t, const PairConstants<dou
 
 template <class T>
 concept RollingLaw = requires(const Touch<double>& t, const PairConstants<double>& c, const NormalForce<double>& n,
-                              const double& dt, Springs<double>& springs) {
+                              const Interval<double>& dt, Springs<double>& springs) {
   { T::name } -> std::convertible_to<std::string_view>;
   { T::has_spring } -> std::convertible_to<bool>;
   { T::objective } -> std::convertible_to<bool>;

@@ -74,11 +74,10 @@ double last_overlap(const Law& law, const PairConstants<double>& c) {
   return with_part<NormalLaws>(law.normal, [&](auto part) { return std::min(part.form_overlap(c), part.break_overlap(c)); });
 }
 
-// Forces, and the springs advanced by dt [s]. With dt = 0 nothing slips further and rolling resistance has no limit from the
-// spin.
+// Forces, and the springs advanced by dt.
 template <class Law, class Real>
 ContactForce<Real> evaluate(const Law& law, const Touch<Real>& touch, const PairConstants<Real>& c, Springs<Real>& springs,
-                            const Real& dt) {
+                            const Interval<std::type_identity_t<Real>>& dt) {
   ContactForce<Real> f;
   f.normal = with_part<NormalLaws>(law.normal, [&](auto part) { return part.evaluate(touch.overlap, c); });
   const DampingCoefficients<Real> damping =
@@ -86,9 +85,9 @@ ContactForce<Real> evaluate(const Law& law, const Touch<Real>& touch, const Pair
   f.damping = damping.normal * dot(touch.velocity, touch.normal);
   const Real load = with_part<FrictionLimits>(law.friction, [&](auto part) { return part.load(f.normal); });
   f.tangential = with_part<TangentialLaws>(
-      law.tangential, [&](auto part) { return part.evaluate(touch, c, f.normal, load, damping.tangential, springs, dt); });
+      law.tangential, [&](auto part) { return part.evaluate(touch, c, f.normal, load, damping.tangential, springs, dt.length); });
   f.rolling = with_part<RollingLaws>(law.rolling, [&](auto part) { return part.evaluate(touch, c, f.normal, springs, dt); });
-  springs.contact_radius = f.normal.contact_radius;
+  springs.contact_radius = f.normal.contact_radius();
   return f;
 }
 

@@ -43,8 +43,9 @@ struct LevelScale {
 
 inline LevelScale level_scale(const PairConstants<double>& c, const Resolution& r) {
   const double relative = r.accuracy / r.step;  // 1/s
-  const double rest = 2 * c.effective_modulus / c.effective_mass / (4 * relative * relative);
-  const double stiffness = 16 * c.effective_modulus * std::sqrt(c.effective_radius) / (15 * c.effective_mass);
+  const double mass = c.root_mass * c.root_mass;
+  const double rest = 2 * c.effective_modulus / mass / (4 * relative * relative);
+  const double stiffness = 16 * c.effective_modulus * std::sqrt(c.effective_radius) / (15 * mass);
   return {float(1 / rest), float(std::pow(relative, 5) / (std::pow(15.0 / 8, 2.5) * stiffness * stiffness))};
 }
 

@@ -90,7 +90,6 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
   pairs.block.resize(blocks);
   pairs.head.resize(blocks);
   pairs.birth_step.assign(lanes.size(), 0);
-  pairs.result.resize(lanes.size());
   if (rolling_spring) pairs.rolling.resize(blocks);
   if (keep_ledger) pairs.last.resize(lanes.size());
   pairs.chunk.resize(chunks);
@@ -139,10 +138,7 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
       block.first[k] = i;
       block.second[k] = j;
       const PairConstants<double> c = pair_constants(materials.pair[kind], body(i), body(j < grains.size() ? j : i));
-      block.effective_radius[k] = c.effective_radius;
-      block.effective_mass[k] = c.effective_mass;
-      block.effective_inertia[k] = c.effective_inertia;
-      block.adhesion_length[k] = c.adhesion_length;
+      for (std::size_t m = 0; m < constants_per_contact; ++m) block.constant[m][k] = c.*contact_constants<double>[m];
       const LevelScale scale = level_scale(c, resolution);
       LevelScale& least = pairs.head[b].scale;
       least = k == 0 ? scale : LevelScale{std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};

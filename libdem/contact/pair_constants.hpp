@@ -36,24 +36,30 @@ struct BodyConstants {
 };
 inline double harmonic(double a, double b) { return a * b / (a + b); }
 
+// Of a contact of this effective radius, m.
+inline void set_adhesion(PairConstants<double>& c, double effective_radius) {
+  c.effective_radius = effective_radius;
+  c.adhesion_length = adhesion_length(c.work_of_adhesion, c.effective_radius, c.effective_modulus);
+  c.per_adhesion_length = c.adhesion_length > 0 ? 1 / c.adhesion_length : 0;
+  c.root_adhesion_radius = std::sqrt(std::sqrt(c.adhesion_length * c.effective_radius));
+}
+
 // Two spheres.
 inline PairConstants<double> pair_constants(const PairConstants<double>& materials, const BodyConstants& a,
                                             const BodyConstants& b) {
   PairConstants<double> c = materials;
-  c.effective_radius = harmonic(a.radius, b.radius);
-  c.effective_mass = harmonic(a.mass, b.mass);
+  set_adhesion(c, harmonic(a.radius, b.radius));
+  c.root_mass = std::sqrt(harmonic(a.mass, b.mass));
   c.effective_inertia = harmonic(a.inertia, b.inertia);
-  c.adhesion_length = adhesion_length(c.work_of_adhesion, c.effective_radius, c.effective_modulus);
   return c;
 }
 
 // A sphere and a wall: flat, and so heavy that it does not move.
 inline PairConstants<double> wall_constants(const PairConstants<double>& materials, const BodyConstants& a) {
   PairConstants<double> c = materials;
-  c.effective_radius = a.radius;
-  c.effective_mass = a.mass;
+  set_adhesion(c, a.radius);
+  c.root_mass = std::sqrt(a.mass);
   c.effective_inertia = a.inertia;
-  c.adhesion_length = adhesion_length(c.work_of_adhesion, c.effective_radius, c.effective_modulus);
   return c;
 }
 
@@ -69,8 +75,7 @@ inline PairConstants<double> on_curved_wall(PairConstants<double> flat, const st
   const double a = 1 - radius * curvature[0], b = 1 - radius * curvature[1];
   constexpr double least = 1 / (conforming * conforming);
   const double ratio = 1 / std::sqrt(a > 0 && b > 0 ? std::max(a * b, least) : least);
-  flat.effective_radius *= ratio;
-  flat.adhesion_length *= std::cbrt(ratio);
+  set_adhesion(flat, flat.effective_radius * ratio);
   return flat;
 }
 

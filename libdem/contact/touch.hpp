@@ -5,6 +5,9 @@
 // of the radii; against a wall that puts it at one radius from the particle's centre. It is one point for both bodies, so
 // linear and angular momentum are conserved to rounding.
 #pragma once
+#include <array>
+#include <cstddef>
+
 #include "libdem/contact/number.hpp"
 
 namespace dem {
@@ -18,7 +21,7 @@ struct Touch {
   Real arm_i, arm_j;      // m, from the centres to the contact point; 0 for a wall
 };
 
-// Constants of one contact: of the two materials, and of the two bodies.
+// Constants of one contact: of the two materials, and of the two bodies. Roots are kept where the law would take them every time.
 template <class Real>
 struct PairConstants {
   Real effective_modulus;   // Pa, E*: 1/E* = (1-nu_i^2)/E_i + (1-nu_j^2)/E_j
@@ -29,9 +32,31 @@ struct PairConstants {
   Real rolling_damping;     // 1, share of critical damping of an elastic rolling resistance
   Real work_of_adhesion;    // J/m^2
   Real effective_radius;    // m, R*: 1/R* = 1/R_i + 1/R_j
-  Real effective_mass;      // kg
   Real effective_inertia;   // kg m^2, 1/(1/I_i + 1/I_j)
-  Real adhesion_length;     // m, a0^2/R* = (4 pi^2 W^2 R*/E*^2)^(1/3); 0 without adhesion
+  Real root_mass;           // kg^(1/2), sqrt(m*): 1/m* = 1/m_i + 1/m_j
+  Real adhesion_length;     // m, s = a0^2/R* = (4 pi^2 W^2 R*/E*^2)^(1/3); 0 without adhesion
+  Real per_adhesion_length; // 1/m, 1/s; 0 without adhesion
+  Real root_adhesion_radius;  // m^(1/2), sqrt(a0)
+};
+
+// TABLES of the members: those of the two materials, and those that differ from contact to contact of the same materials.
+template <class Real>
+inline constexpr std::array material_constants = {
+    &PairConstants<Real>::effective_modulus,  &PairConstants<Real>::effective_shear,  &PairConstants<Real>::normal_damping,
+    &PairConstants<Real>::tangential_damping, &PairConstants<Real>::friction,         &PairConstants<Real>::rolling_friction,
+    &PairConstants<Real>::rolling_damping,    &PairConstants<Real>::work_of_adhesion};
+template <class Real>
+inline constexpr std::array contact_constants = {
+    &PairConstants<Real>::effective_radius, &PairConstants<Real>::effective_inertia,   &PairConstants<Real>::root_mass,
+    &PairConstants<Real>::adhesion_length,  &PairConstants<Real>::per_adhesion_length, &PairConstants<Real>::root_adhesion_radius};
+inline constexpr std::size_t constants_per_contact = contact_constants<double>.size();
+
+// How long springs advance: s, and 1/s. Of no length: nothing slips further and rolling resistance has no limit from the spin.
+template <class Real>
+struct Interval {
+  Real length, rate;
+  Interval(const Real& l) : length(l), rate(1.0 / l) {}
+  Interval(const Real& l, const Real& r) : length(l), rate(r) {}
 };
 
 // What a contact remembers between steps.
@@ -45,11 +70,12 @@ struct Springs {
 template <class Real>
 struct NormalForce {
   Real elastic;         // N, > 0 repulsive; adhesion included
-  Real contact_radius;  // m
+  Real root_radius;     // m^(1/2), root of the contact radius
   Real repulsive;       // N, without the part that adhesion pulls with
   Real pull_off;        // N, largest tension the contact carries; 0 without adhesion
   Real energy;          // J, integral of the elastic force over the overlap; 0 for separated bodies
   Real surface_energy;  // J, <= 0, the part of `energy` that is gained by closing surfaces
+  Real contact_radius() const { return root_radius * root_radius; }  // m
 };
 
 // kg/s: what multiplies the closing speed and the sliding speed. Where a damping law says so, over the root of a radius of the

@@ -137,19 +137,20 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
       for (std::size_t r = number * chunk_rows; r < std::min((number + 1) * chunk_rows, n); ++r) {
         const std::uint32_t i = grains.order[r];
         WallCandidate c{};
+        c.contact_begin = std::uint32_t(fresh.contact.size());
         for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
           const State::WallPair& kept = memory.wall_pairs[k];
           if (kept.wall != w) continue;
           if (c.size == WallCandidate::capacity) throw CaseError("the stored state has a contact with a wall that is not there");
-          WallContact& contact = c.contact[c.size++];
-          contact = WallContact{};
+          ++c.size;
+          WallContact& contact = fresh.contact.emplace_back();
           contact.touch.feature = kept.feature;
           contact.touch.normal = kept.normal;
           contact.touch.distance = kept.distance;
           contact.touch.curvature = kept.curvature;
           contact.memory = {kept.spring, kept.contact_radius, kept.birth_step};
           contact.rolling = kept.rolling;
-          if (setup.keep_ledger) contact.last = memory.wall_last[k];
+          if (setup.keep_ledger) fresh.last.push_back(memory.wall_last[k]);
           c.level = kept.level;
           c.asleep = false;
           ++remembered;
@@ -162,6 +163,10 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
         candidate_parts(setup.walls[w], in.poses[w], grains.rows[r].position(), reach, fresh.parts);
         c.part_end = std::uint32_t(fresh.parts.size());
         if (c.size == 0 && std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
+        const std::size_t places = std::min<std::size_t>(c.part_end - c.part_begin, WallCandidate::capacity);
+        c.room = std::max(c.size, std::uint16_t(std::max<std::size_t>(places, 1)));
+        fresh.contact.resize(c.contact_begin + c.room);
+        if (setup.keep_ledger) fresh.last.resize(fresh.contact.size());
         c.constants = wall_constants(in.materials(grains.material[r], setup.walls[w].material),
                                      {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
         c.scale = level_scale(c.constants, setup.resolution());
@@ -228,12 +233,12 @@ Memory gather(const GrainStore& grains, const PairContacts& pairs, const WallCon
   }
   for (const std::uint32_t q : by_grain(grains, walls)) {
     const WallCandidate& c = walls.candidate[q];
-    for (std::size_t k = 0; k < c.size; ++k) {
-      const WallContact& w = c.contact[k];
+    for (std::size_t k = c.contact_begin; k < c.contact_begin + c.size; ++k) {
+      const WallContact& w = walls.contact[k];
       if (!w.acts()) continue;
       all.wall_pairs.push_back({order[c.particle], c.wall, w.touch.feature, w.touch.normal, w.memory.spring, w.memory.birth_step,
                                 w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature, c.level});
-      all.wall_last.push_back(w.last);
+      if (!walls.last.empty()) all.wall_last.push_back(walls.last[k]);
     }
   }
   return all;

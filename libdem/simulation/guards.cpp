@@ -48,8 +48,7 @@ PairGeometry geometry(const GuardInput& in, std::size_t lane) {
 PairConstants<double> constants(const GuardInput& in, std::size_t lane) {
   const std::size_t b = lane / PairContacts::width, k = lane % PairContacts::width;
   PairConstants<double> c = in.materials.pair[in.pairs.head[b].material_pair];
-  c.effective_radius = in.pairs.block[b].effective_radius[k];
-  c.adhesion_length = in.pairs.block[b].adhesion_length[k];
+  for (std::size_t m = 0; m < constants_per_contact; ++m) c.*contact_constants<double>[m] = in.pairs.block[b].constant[m][k];
   return c;
 }
 
@@ -72,10 +71,9 @@ void for_each_contact(const GuardInput& in, std::size_t i, F f) {
          g.overlap, [&] { return "grain " + std::to_string(in.id[first == i ? second : first]); });
   }
   for (const WallCandidate& c : in.walls.candidate)
-    for (std::size_t q = 0; q < c.size && c.particle == i; ++q)
-      if (c.contact[q].acts())
-        tell(c.constants, c.contact[q].memory.contact_radius, c.contact[q].touch.normal, c.contact[q].elastic,
-             in.grains[i].radius() - c.contact[q].touch.distance, [&] { return "wall '" + in.setup.walls[c.wall].name + "'"; });
+    for (const WallContact& w : in.walls.contacts(c))
+      if (c.particle == i && w.acts())
+        tell(c.constants, w.memory.contact_radius, w.touch.normal, w.elastic, in.grains[i].radius() - w.touch.distance, [&] { return "wall '" + in.setup.walls[c.wall].name + "'"; });
 }
 
 // "its largest force, 12 N at an overlap of 1.5 um, is with wall 'blade'"
@@ -151,8 +149,8 @@ std::vector<double> traces(const GuardInput& in) {
     add(in.pairs.second(lane), c, in.pairs.contact_radius(lane));
   }
   for (const WallCandidate& c : in.walls.candidate)
-    for (std::size_t k = 0; k < c.size; ++k)
-      if (c.contact[k].acts()) add(c.particle, c.constants, c.contact[k].memory.contact_radius);
+    for (const WallContact& w : in.walls.contacts(c))
+      if (w.acts()) add(c.particle, c.constants, w.memory.contact_radius);
   return trace;
 }
 
@@ -197,10 +195,10 @@ void stop_for_overlap(const GuardInput& in) {
                          "; likely cause: a time step above the stable limit");
   }
   for (const WallCandidate& c : in.walls.candidate)
-    for (std::size_t k = 0; k < c.size; ++k) {
-      const double radius = in.grains[c.particle].radius(), overlap = radius - c.contact[k].touch.distance;
-      if (c.contact[k].acts() && !(overlap < runaway_overlap * radius))
-        throw PhysicsError(text(overlap, c.contact[k].elastic) + "wall '" + in.setup.walls[c.wall].name + "' and " +
+    for (const WallContact& w : in.walls.contacts(c)) {
+      const double radius = in.grains[c.particle].radius(), overlap = radius - w.touch.distance;
+      if (w.acts() && !(overlap < runaway_overlap * radius))
+        throw PhysicsError(text(overlap, w.elastic) + "wall '" + in.setup.walls[c.wall].name + "' and " +
                            place(in, c.particle) +
                            "; likely cause: a time step above the stable limit, or a gap too narrow for the grain");
     }

@@ -577,7 +577,7 @@ struct Simulation::Engine {
     }
     for (const LastForces& last : pairs.last) sum.stored += last.energy();
     for (const WallCandidate& c : walls.candidate)
-      for (std::size_t k = 0; k < c.size; ++k) sum.stored += c.contact[k].last.energy();
+      for (std::size_t k = c.contact_begin; k < c.contact_begin + c.size; ++k) sum.stored += walls.last[k].energy();
     sum.spent = spent;
     sum.wall_work = wall_work;
     sum.initial = initial_energy;
@@ -600,13 +600,15 @@ Ledger Simulation::ledger() const { return engine_->ledger(); }
 const Effort& Simulation::effort() const { return engine_->effort; }
 std::size_t Simulation::bytes() const {
   const Engine& e = *engine_;
+  std::size_t recorded = 0;
+  for (const PairContacts::Chunk& chunk : e.pairs.chunk) recorded += bytes_of(chunk.recorded);
   const GrainStore& g = e.grains;
   const Particles& p = g.caller;
-  return bytes_of(p.id, p.material, p.radius, p.position, p.velocity, p.angular_velocity, g.caller_mass, g.caller_inertia) +
+  return recorded + bytes_of(p.id, p.material, p.radius, p.position, p.velocity, p.angular_velocity, g.caller_mass, g.caller_inertia) +
          bytes_of(g.order, g.row_of, g.rows, g.forces, g.mass, g.inertia, g.material, g.id, g.listed, g.level, g.asked, e.kick, e.turn) +
-         bytes_of(e.pairs.block, e.pairs.head, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.result, e.pairs.crossing,
-                  e.pairs.incoming, e.pairs.chunk) +
-         bytes_of(e.walls.candidate, e.walls.parts, e.walls.chunk, e.walls.chunk_begin);
+         bytes_of(e.pairs.block, e.pairs.head, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.crossing, e.pairs.incoming,
+                  e.pairs.chunk) +
+         bytes_of(e.walls.candidate, e.walls.parts, e.walls.contact, e.walls.last, e.walls.chunk, e.walls.chunk_begin);
 }
 double Simulation::stable_step() const { return dem::stable_step(engine_->guarded()); }
 
@@ -615,7 +617,7 @@ std::size_t Simulation::contacts() const {
   for (const PairContacts::Block& block : engine_->pairs.block)
     for (const double radius : block.contact_radius) count += radius > 0;
   for (const WallCandidate& c : engine_->walls.candidate)
-    for (std::size_t k = 0; k < c.size; ++k) count += c.contact[k].acts();
+    for (const WallContact& w : engine_->walls.contacts(c)) count += w.acts();
   return count;
 }
 
@@ -690,22 +692,20 @@ View Simulation::view() const {
     view.velocity[i] = p.velocity[i] + half / grains.mass[r] * grains.forces[r].force.head<3>();
     view.angular_velocity[i] = p.angular_velocity[i] + half / grains.inertia[r] * grains.forces[r].torque.head<3>();
   }
-  for (std::size_t lane = 0; lane < e.pairs.lanes(); ++lane) {
-    if (!e.pairs.acts(lane)) continue;
-    const PairForce& r = e.pairs.result[lane];
-    const std::uint32_t first = grains.order[e.pairs.first(lane)], second = grains.order[e.pairs.second(lane)];
-    const double distance = (p.position[second] - p.position[first]).norm();
-    const auto [i, j] = std::minmax(first, second);
-    view.pairs.push_back({i, j, p.radius[i] + p.radius[j] - distance, r.elastic, r.damping,
-                          first < second ? r.tangential : Vec3(-r.tangential), e.pairs.birth_step[lane], r.sliding});
-  }
+  for (const PairContacts::Chunk& chunk : e.pairs.chunk)
+    for (const PairForce& r : chunk.recorded) {
+      const std::uint32_t first = grains.order[e.pairs.first(r.lane)], second = grains.order[e.pairs.second(r.lane)];
+      const double distance = (p.position[second] - p.position[first]).norm();
+      const auto [i, j] = std::minmax(first, second);
+      view.pairs.push_back({i, j, p.radius[i] + p.radius[j] - distance, r.elastic, r.damping,
+                            first < second ? r.tangential : Vec3(-r.tangential), e.pairs.birth_step[r.lane], r.sliding});
+    }
   std::sort(view.pairs.begin(), view.pairs.end(),
             [](const PairRecord& a, const PairRecord& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); });
   for (const std::uint32_t q : by_grain(grains, e.walls)) {
     const WallCandidate& c = e.walls.candidate[q];
     const std::uint32_t i = grains.order[c.particle];
-    for (std::size_t k = 0; k < c.size; ++k) {
-      const WallContact& r = c.contact[k];
+    for (const WallContact& r : e.walls.contacts(c)) {
       if (!r.acts()) continue;
       view.wall_pairs.push_back({i, c.wall, r.touch.facet, r.touch.kind, r.touch.point, r.touch.normal,
                                  p.radius[i] - r.touch.distance, r.elastic, r.damping, r.tangential, r.memory.birth_step,

@@ -27,8 +27,8 @@ inline DampingCoefficients<double> per_root(double restitution, double effective
   return {factor * std::sqrt(2 * effective_modulus), factor * std::sqrt(8 * effective_shear)};
 }
 template <class Real>
-DampingCoefficients<Real> of_radius(const Real& radius, const PairConstants<Real>& c) {
-  const Real root = square_root(radius * c.effective_mass);
+DampingCoefficients<Real> of_radius(const Real& root_radius, const PairConstants<Real>& c) {
+  const Real root = root_radius * c.root_mass;
   return {c.normal_damping * root, c.tangential_damping * root};
 }
 }  // namespace damping
@@ -41,7 +41,7 @@ struct ContactRadiusDamping {
   }
   template <class Real>
   static DampingCoefficients<Real> evaluate(const Real&, const NormalForce<Real>& normal, const PairConstants<Real>& c) {
-    return damping::of_radius(normal.contact_radius, c);
+    return damping::of_radius(normal.root_radius, c);
   }
 };
 
@@ -53,7 +53,7 @@ struct OverlapDamping {
   }
   template <class Real>
   static DampingCoefficients<Real> evaluate(const Real& overlap, const NormalForce<Real>&, const PairConstants<Real>& c) {
-    return damping::of_radius(square_root(c.effective_radius * larger(overlap, Real(0.0))), c);
+    return damping::of_radius(square_root(square_root(c.effective_radius * larger(overlap, Real(0.0)))), c);
   }
 };
 
@@ -69,7 +69,7 @@ struct TsujiDamping {
   }
   template <class Real>
   static DampingCoefficients<Real> evaluate(const Real&, const NormalForce<Real>& normal, const PairConstants<Real>& c) {
-    return damping::of_radius(normal.contact_radius, c);
+    return damping::of_radius(normal.root_radius, c);
   }
 };
 

@@ -32,7 +32,7 @@ struct Hertz {
     const Real h = larger(overlap, Real(0.0));
     const Real a = square_root(c.effective_radius * h);
     const Real force = (4.0 / 3.0) * c.effective_modulus * a * h;
-    return {force, a, force, Real(0.0), 0.4 * force * h, Real(0.0)};
+    return {force, square_root(a), force, Real(0.0), 0.4 * force * h, Real(0.0)};
   }
 };
 

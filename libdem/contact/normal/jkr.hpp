@@ -23,18 +23,19 @@ inline constexpr double jkr_break = -0.47247039371057742;
 // The stable root y(delta) of y^4 - y = delta for delta >= jkr_break.
 // With y = y_c + e, y_c = 4^(-1/3), the quartic becomes e^2 (6 y_c^2 + 4 y_c e + e^2) = q^2 with q^2 = delta - jkr_break: no
 // cancellation and no second positive root. For small and for large q, e tends to q/(2 r) and q/r with r = sqrt(q + 3/2 y_c^2),
-// and (q/e - r) is a smooth function of 1/r: here the polynomial that agrees with it at the Chebyshev nodes of
-// [0, 1/sqrt(3/2 y_c^2)]. That is within 2.1e-6 everywhere, so that one Halley step, which cubes the error, reaches rounding.
+// and e r/q is a smooth function of 1/r: here the polynomial that agrees with it at the Chebyshev nodes of
+// [0, 1/sqrt(3/2 y_c^2)]. That is within 6.7e-7 everywhere, so that one Halley step, which cubes the error, reaches rounding.
 template <class Real>
 Real jkr_root(const Real& delta) {
   constexpr double y_c = 0.62996052494743658;  // 4^(-1/3)
   constexpr double a = 6 * y_c * y_c, b = 4 * y_c, c = a / 4;
-  constexpr double p0 = 0.6299660838393667, p1 = 0.09889708929662264, p2 = 0.0031596421991890553, p3 = 0.021440172063343824,
-                   p4 = -0.019819108944625196, p5 = 0.0047399240659539935;
+  constexpr double p0 = 1.0000006865390332, p1 = -0.63002931654275204, p2 = 0.29883539382789936, p3 = -0.13349666407197169,
+                   p4 = 0.047349591724065933, p5 = -0.0046482426081651743, p6 = -0.0039879402227714332,
+                   p7 = 0.0012244462369246199;
   const Real t = larger(delta - jkr_break, Real(1e-40));  // the least that leaves no 0/0 below; its root is y_c
   const Real q = square_root(t);
-  const Real r2 = q + c, r = square_root(r2), x = r * (1.0 / r2), x2 = x * x;
-  const Real e = q / (r + ((p0 + p1 * x) + x2 * ((p2 + p3 * x) + x2 * (p4 + p5 * x))));
+  const Real r2 = q + c, x = square_root(r2) * (1.0 / r2), x2 = x * x;
+  const Real e = q * x * (((p0 + p1 * x) + x2 * (p2 + p3 * x)) + x2 * x2 * ((p4 + p5 * x) + x2 * (p6 + p7 * x)));
   const Real f = e * e * (a + e * (b + e)) - t;
   const Real f1 = e * (2 * a + e * (3 * b + 4 * e));
   const Real f2 = a + e * (3 * b + 6 * e);  // half the second derivative
@@ -70,22 +71,21 @@ struct JkrForce {
   template <class Real>
   static NormalForce<Real> evaluate(const Real& overlap, const PairConstants<Real>& c) {
     const Mask<Real> sticky = c.adhesion_length > Real(0.0);
-    const Real s = select(sticky, c.adhesion_length, Real(1.0));
-    const Real y = jkr_root(Real(overlap * Real(1.0 / s)));
+    const Real y = jkr_root(Real(overlap * c.per_adhesion_length));
     const Real y3 = y * y * y;
     const Real pull_off = (1.5 * std::numbers::pi) * c.work_of_adhesion * c.effective_radius;
     const Real repulsive = pull_off * (16.0 / 9.0) * y3 * y3;  // 4 E* a^3/(3 R*)
-    const Real a2 = s * c.effective_radius * y3 * y;
+    const Real root_radius = c.root_adhesion_radius * y, a = root_radius * root_radius;
     const NormalForce<Real> jkr = {repulsive - pull_off * (8.0 / 3.0) * y3,
-                                   square_root(s * c.effective_radius) * (y * y),
+                                   root_radius,
                                    repulsive,
                                    pull_off,
-                                   pull_off * s * jkr_energy(y),
-                                   Real(-std::numbers::pi) * c.work_of_adhesion * a2};
+                                   pull_off * c.adhesion_length * jkr_energy(y),
+                                   Real(-std::numbers::pi) * c.work_of_adhesion * (a * a)};
     if (all(sticky)) return jkr;
     const NormalForce<Real> hertz = Hertz::evaluate(overlap, c);
     return {select(sticky, jkr.elastic, hertz.elastic),
-            select(sticky, jkr.contact_radius, hertz.contact_radius),
+            select(sticky, jkr.root_radius, hertz.root_radius),
             select(sticky, jkr.repulsive, hertz.repulsive),
             pull_off,
             select(sticky, jkr.energy, hertz.energy),

@@ -23,11 +23,11 @@ Triple<Real> without_twist(const Triple<Real>& spin, const Triple<Real>& normal)
 
 // -size w/|w|, no more than the largest share of the spin.
 template <class Real>
-Triple<Real> against(const Triple<Real>& w, const Real& size, const PairConstants<Real>& c, const Real& dt) {
+Triple<Real> against(const Triple<Real>& w, const Real& size, const PairConstants<Real>& c, const Interval<Real>& dt) {
   const Real size2 = dot(w, w);
   const Mask<Real> turning = size2 > Real(0.0);
   const Real per_spin = size / square_root(select(turning, size2, Real(1.0)));
-  const Real most = largest_share_of_spin * c.effective_inertia / dt;
+  const Real most = largest_share_of_spin * c.effective_inertia * dt.rate;
   return w * select(turning, Real(-1.0) * smaller(per_spin, most), Real(0.0));
 }
 
@@ -43,7 +43,7 @@ struct FreeRolling {
   static constexpr bool has_spring = false, objective = true;
   template <class Real>
   static RollingTorque<Real> evaluate(const Touch<Real>&, const PairConstants<Real>&, const NormalForce<Real>&, Springs<Real>&,
-                                      const Real&) {
+                                      const Interval<Real>&) {
     const Real zero(0.0);
     return {{zero, zero, zero}, {zero, zero, zero}, zero};
   }
@@ -55,7 +55,7 @@ struct ConstantTorque {
   static constexpr bool has_spring = false, objective = true;
   template <class Real>
   static RollingTorque<Real> evaluate(const Touch<Real>& touch, const PairConstants<Real>& c, const NormalForce<Real>& normal,
-                                      Springs<Real>&, const Real& dt) {
+                                      Springs<Real>&, const Interval<Real>& dt) {
     const Triple<Real> w = rolling::without_twist(touch.spin_i - touch.spin_j, touch.normal);
     const Real size = c.rolling_friction * c.effective_radius * larger(normal.elastic, Real(0.0));
     const Triple<Real> on_i = rolling::against(w, size, c, dt);
@@ -71,7 +71,7 @@ struct EdemRolling {
   static constexpr bool has_spring = false, objective = false;
   template <class Real>
   static RollingTorque<Real> evaluate(const Touch<Real>& touch, const PairConstants<Real>& c, const NormalForce<Real>& normal,
-                                      Springs<Real>&, const Real& dt) {
+                                      Springs<Real>&, const Interval<Real>& dt) {
     const Real load = c.rolling_friction * larger(normal.elastic, Real(0.0));
     return {rolling::against(touch.spin_i, load * touch.arm_i, c, dt),
             rolling::against(touch.spin_j, load * touch.arm_j, c, dt), Real(0.0)};
@@ -87,18 +87,18 @@ struct ElasticPlasticRolling {
   static constexpr bool has_spring = true, objective = true;
   template <class Real>
   static RollingTorque<Real> evaluate(const Touch<Real>& touch, const PairConstants<Real>& c, const NormalForce<Real>& normal,
-                                      Springs<Real>& springs, const Real& dt) {
+                                      Springs<Real>& springs, const Interval<Real>& dt) {
     const Triple<Real> w = rolling::without_twist(touch.spin_i - touch.spin_j, touch.normal);
     const Real lever = c.rolling_friction * c.effective_radius;
-    const Real stiffness = 4.5 * c.effective_modulus * normal.contact_radius * lever * lever;
-    const Triple<Real> trial = rolling::without_twist(springs.rolling, touch.normal) - w * (stiffness * dt);
+    const Real stiffness = 4.5 * c.effective_modulus * normal.contact_radius() * lever * lever;
+    const Triple<Real> trial = rolling::without_twist(springs.rolling, touch.normal) - w * (stiffness * dt.length);
     const Real limit = lever * larger(normal.elastic, Real(0.0));
     const Real size2 = dot(trial, trial);
     const Mask<Real> plastic = size2 > limit * limit;
     springs.rolling = trial * select(plastic, limit / square_root(select(plastic, size2, Real(1.0))), Real(1.0));
     // Explicit damping, and so no more than the largest share of the spin.
     const Real damping = smaller(2.0 * c.rolling_damping * square_root(3.5 * c.effective_inertia * stiffness),
-                                 Real(rolling::largest_share_of_spin * c.effective_inertia / dt));
+                                 Real(rolling::largest_share_of_spin * c.effective_inertia * dt.rate));
     const Triple<Real> on_i = springs.rolling - w * select(plastic, Real(0.0), damping);
     const Mask<Real> stiff = stiffness > Real(0.0);
     const Real energy = select(stiff, 0.5 * dot(springs.rolling, springs.rolling) / select(stiff, stiffness, Real(1.0)), Real(0.0));

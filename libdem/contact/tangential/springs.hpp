@@ -34,21 +34,23 @@ struct MindlinSpring {
     const Triple<Real> flat = old - touch.normal * dot(old, touch.normal);
     const Real flat2 = dot(flat, flat);
     const Mask<Real> turn = flat2 > Real(0.0);
+    const Real radius = normal.contact_radius();
     const Real keep = select(turn, square_root(length2 / select(turn, flat2, Real(1.0))), Real(0.0));
-    const Triple<Real> carried = flat * (keep * Variant::share(springs.contact_radius, normal.contact_radius));
+    const Triple<Real> carried = flat * (keep * Variant::share(springs.contact_radius, radius));
     const Triple<Real> trial = carried + v_t * dt;
 
-    const Real k_t = 8.0 * c.effective_shear * normal.contact_radius;
+    const Real k_t = 8.0 * c.effective_shear * radius;
     const Triple<Real> viscous = v_t * (Real(0.0) - damping);
     const Triple<Real> unlimited = trial * (Real(0.0) - k_t) + viscous;
     const Real limit = c.friction * load;
     const Real size2 = dot(unlimited, unlimited);
     const Mask<Real> sliding = size2 > limit * limit;
-    const Real scale = select(sliding, limit / square_root(select(sliding, size2, Real(1.0))), Real(1.0));
-    const Triple<Real> limited = unlimited * scale;
-    const Mask<Real> elastic = k_t > Real(0.0);
-    const Real compliance = select(elastic, Real(-1.0) / select(elastic, k_t, Real(1.0)), Real(0.0));
-    springs.tangential = select(sliding, limited * compliance, trial);
+    // limit/|F_t| and that over k_t by one division; 0 where there is no stiffness.
+    const Real size_k = square_root(size2) * k_t;
+    const Mask<Real> slips = sliding && (size_k > Real(0.0));
+    const Real compliant = select(slips, limit / select(slips, size_k, Real(1.0)), Real(0.0));
+    const Triple<Real> limited = unlimited * (compliant * k_t);
+    springs.tangential = select(sliding, unlimited * (Real(0.0) - compliant), trial);
 
     TangentialForce<Real> f;
     f.elastic = select(sliding, limited, trial * (Real(0.0) - k_t));

@@ -266,18 +266,9 @@ TEST(EveryLaw, APackGivesTheSameBitsAsSingleNumbers) {
   for_every_law([](const LawChoice& law, const PairConstants<double>& c) {
     Random random;
     PairConstants<Pack> packed;
-    packed.effective_modulus = c.effective_modulus;
-    packed.effective_shear = c.effective_shear;
-    packed.normal_damping = c.normal_damping;
-    packed.tangential_damping = c.tangential_damping;
-    packed.friction = c.friction;
-    packed.rolling_friction = c.rolling_friction;
-    packed.rolling_damping = c.rolling_damping;
-    packed.work_of_adhesion = c.work_of_adhesion;
-    packed.effective_radius = c.effective_radius;
-    packed.effective_mass = c.effective_mass;
-    packed.effective_inertia = c.effective_inertia;
-    packed.adhesion_length = c.adhesion_length;
+    for (std::size_t m = 0; m < material_constants<double>.size(); ++m)
+      packed.*material_constants<Pack>[m] = c.*material_constants<double>[m];
+    for (std::size_t m = 0; m < constants_per_contact; ++m) packed.*contact_constants<Pack>[m] = c.*contact_constants<double>[m];
     for (int k = 0; k < 30; ++k) {
       std::vector<Sample> lanes;
       for (std::size_t l = 0; l < pack_width; ++l) lanes.push_back(sample(random, c));
@@ -297,7 +288,7 @@ TEST(EveryLaw, APackGivesTheSameBitsAsSingleNumbers) {
       Springs<Pack> springs{triples([](const Sample& s) { return s.springs.tangential; }),
                             triples([](const Sample& s) { return s.springs.rolling; }),
                             pack([](const Sample& s) { return s.springs.contact_radius; })};
-      const ContactForce<Pack> f = evaluate(law, touch, packed, springs, Pack(dt));
+      const ContactForce<Pack> f = evaluate(law, touch, packed, springs, Interval<Pack>(dt, 1 / dt));
       for (std::size_t l = 0; l < pack_width; ++l) {
         Springs<double> single = lanes[l].springs;
         const ContactForce<double> g = evaluate(law, lanes[l].touch, c, single, dt);

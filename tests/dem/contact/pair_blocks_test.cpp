@@ -131,10 +131,8 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
         EXPECT_EQ(kind.work_of_adhesion, s.materials(s.material[i], s.material[j]).work_of_adhesion);
         const PairConstants<double> expected = pair_constants(kind, {s.rows[i].radius(), s.mass[i], s.inertia[i]},
                                                               {s.rows[j].radius(), s.mass[j], s.inertia[j]});
-        EXPECT_EQ(pairs.block[b].effective_radius[k], expected.effective_radius);
-        EXPECT_EQ(pairs.block[b].effective_mass[k], expected.effective_mass);
-        EXPECT_EQ(pairs.block[b].effective_inertia[k], expected.effective_inertia);
-        EXPECT_EQ(pairs.block[b].adhesion_length[k], expected.adhesion_length);
+        for (std::size_t m = 0; m < constants_per_contact; ++m)
+          EXPECT_EQ(pairs.block[b].constant[m][k], expected.*contact_constants<double>[m]);
       }
   // Every crossing is announced to the chunk of the second grain, once.
   std::map<std::uint32_t, std::uint32_t> announced;

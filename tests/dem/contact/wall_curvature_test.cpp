@@ -51,16 +51,17 @@ TEST(WallCurvature, EffectiveRadiusGivesTheForceOfTheExactEllipticalContact) {
 
 TEST(WallCurvature, AdhesionLengthFollowsTheEffectiveRadius) {
   PairConstants<double> flat{};
-  flat.effective_radius = 0.4625e-3;
-  flat.adhesion_length = adhesion_length(0.274, 0.4625e-3, 3.28125e10);
+  flat.effective_modulus = 3.28125e10;
+  flat.work_of_adhesion = 0.274;
+  set_adhesion(flat, 0.4625e-3);
   const PairConstants<double> curved = on_curved_wall(flat, {1 / 12.5e-3, 0});
   EXPECT_NEAR(curved.adhesion_length / adhesion_length(0.274, curved.effective_radius, 3.28125e10), 1, 1e-14);
 }
 
 TEST(WallCurvature, AHollowAsNarrowAsTheSphereIsBounded) {
   PairConstants<double> flat{};
-  flat.effective_radius = 1e-3;
-  flat.adhesion_length = 1e-9;
+  flat.effective_modulus = 3.28125e10;
+  set_adhesion(flat, 1e-3);
   for (const double hollow : {1e-3, 0.999e-3, 0.5e-3, 1.0001e-3}) {
     const PairConstants<double> c = on_curved_wall(flat, {1 / hollow, 0});
     EXPECT_DOUBLE_EQ(c.effective_radius, conforming * 1e-3) << hollow;

@@ -36,17 +36,18 @@ TEST(Levels, ResolveWhatTheirFormulaSays) {
   const PairConstants<double> c = glass_pair(0.4625e-3);
   const Resolution r{5e-8, 0.2, 8};
   const LevelScale scale = level_scale(c, r);
+  const double mass = c.root_mass * c.root_mass;
   for (std::uint8_t level = 0; level < 8; ++level) {
     const double h = r.step * stride(level);
     // (1): omega h = 2 accuracy.
-    const double radius = std::pow(2 * r.accuracy / h, 2) * c.effective_mass / (2 * c.effective_modulus);
+    const double radius = std::pow(2 * r.accuracy / h, 2) * mass / (2 * c.effective_modulus);
     EXPECT_TRUE(resolved(level, scale, 0.999 * radius, 0, 1));
     EXPECT_FALSE(resolved(level, scale, 1.001 * radius, 0, 1));
     // (2): the speed whose deepest overlap has omega h = accuracy, from the energy m v^2/2 = (8/15) E* sqrt(R*) d^(5/2).
     const double omega = r.accuracy / h;
-    const double deepest_radius = omega * omega * c.effective_mass / (2 * c.effective_modulus);
+    const double deepest_radius = omega * omega * mass / (2 * c.effective_modulus);
     const double depth = deepest_radius * deepest_radius / c.effective_radius;
-    const double speed = std::sqrt(16.0 / 15 * c.effective_modulus * std::sqrt(c.effective_radius) * std::pow(depth, 2.5) / c.effective_mass);
+    const double speed = std::sqrt(16.0 / 15 * c.effective_modulus * std::sqrt(c.effective_radius) * std::pow(depth, 2.5) / mass);
     EXPECT_TRUE(resolved(level, scale, 0, 0.999 * speed, 1));
     EXPECT_FALSE(resolved(level, scale, 0, 1.001 * speed, 1));
     // Half of omega h is half of the step.
