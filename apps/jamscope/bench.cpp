@@ -72,8 +72,7 @@ nlohmann::json as_json(const Measured& m, const CaseFile& file, const BenchOptio
           {"particle_steps_per_second", m.particle_steps()},
           {"evaluations_per_second", m.evaluations() / m.wall},
           {"evaluations_over_uniform", m.evaluations() / m.evaluations_at_every_step()},
-          {"share_contacts", e.contacts / e.total()},
-          {"share_motion", e.motion / e.total()},
+          {"share_stepping", e.stepping / e.total()},
           {"share_lists", e.listing / e.total()},
           {"share_rest", e.rest / e.total()},
           {"steps_per_list", e.lists == 0 ? nlohmann::json(nullptr) : nlohmann::json(double(e.steps) / double(e.lists))},
@@ -95,8 +94,7 @@ std::string as_text(const Measured& m, const CaseFile& file, const BenchOptions&
   line("contacts per second", fmt::format("{:.3g} through the law", m.evaluations() / m.wall));
   line("contacts over uniform",
        fmt::format("{:.3f} of what every step would evaluate", m.evaluations() / m.evaluations_at_every_step()));
-  line("time in contacts", share(e.contacts));
-  line("time in motion", share(e.motion));
+  line("time in contacts, motion", share(e.stepping));
   line("time in lists", fmt::format("{}, {} built", share(e.listing), e.lists));
   line("time in walls and the rest", share(e.rest));
   line("memory per grain", fmt::format("{:.0f} bytes", m.bytes / double(m.grains)));

@@ -70,6 +70,8 @@ struct PairContacts {
   struct Chunk {
     std::uint32_t begin = 0, inner_end = 0, end = 0;
     std::uint32_t incoming_begin = 0, incoming_end = 0;
+    std::vector<std::uint32_t> senders;  // chunks, all before this one, whose pairs cross to it
+    std::uint8_t pending = 0;            // its pairs are still to be evaluated; one thread writes what others read
     // Of the last evaluation.
     double largest_overlap = 0;  // over the smaller radius
     LedgerSums ledger;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <thread>
 
 #include "libdem/contact/rows.hpp"
 #include "libdem/errors.hpp"
@@ -61,18 +63,35 @@ inline void store(const Triple<Pack>& values, std::array<PairContacts::Column, 3
   store(values.z, columns[2], lane);
 }
 
-// Each constant of a table is get(its number in it).
-template <std::size_t N, class Get>
-void fill(PairConstants<Pack>& c, const std::array<Pack PairConstants<Pack>::*, N>& table, Get get) {
-  for (std::size_t m = 0; m < N; ++m) c.*table[m] = get(m);
+// Each constant of a table is get(the member, its number in the table). Members are constants of the compiler, and written out:
+// it sees through a table and unrolls a loop too late to keep packs out of memory.
+template <class Get>
+inline void fill_materials(PairConstants<Pack>& c, Get get) {
+  const auto fill = [&]<std::size_t M>(std::integral_constant<std::size_t, M>) {
+    constexpr auto to = material_constants<Pack>[M];
+    constexpr auto from = material_constants<double>[M];
+    c.*to = get(std::integral_constant<decltype(from), from>{}, M);
+  };
+  [&]<std::size_t... M>(std::index_sequence<M...>) {
+    (fill(std::integral_constant<std::size_t, M>{}), ...);
+  }(std::make_index_sequence<material_constants<Pack>.size()>{});
 }
-PairConstants<Pack> constants_of_lanes(const MaterialTable& materials, const PairContacts& pairs, std::size_t number,
-                                       std::size_t lane) {
-  PairConstants<Pack> c;
+template <class Get>
+inline void fill_contacts(PairConstants<Pack>& c, Get get) {
+  const auto fill = [&]<std::size_t M>(std::integral_constant<std::size_t, M>) {
+    constexpr auto to = contact_constants<Pack>[M];
+    constexpr auto from = contact_constants<double>[M];
+    c.*to = get(std::integral_constant<decltype(from), from>{}, M);
+  };
+  [&]<std::size_t... M>(std::index_sequence<M...>) {
+    (fill(std::integral_constant<std::size_t, M>{}), ...);
+  }(std::make_index_sequence<constants_per_contact>{});
+}
+inline void fill_constants(PairConstants<Pack>& c, const MaterialTable& materials, const PairContacts& pairs, std::size_t number,
+                           std::size_t lane) {
   const PairConstants<double>& kind = materials.pair[pairs.head[number].material_pair];
-  fill(c, material_constants<Pack>, [&](std::size_t m) { return Pack(kind.*material_constants<double>[m]); });
-  fill(c, contact_constants<Pack>, [&](std::size_t m) { return load(pairs.block[number].constant[m], lane); });
-  return c;
+  fill_materials(c, [&](auto member, std::size_t) { return Pack(kind.*member()); });
+  fill_contacts(c, [&](auto, std::size_t m) { return load(pairs.block[number].constant[m], lane); });
 }
 
 // One block's parts in ledger.hpp but for the second half of (1). `get(k)` gives lane k's LastForces; lanes from `count` on book
@@ -199,7 +218,8 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
     const auto place_i = load_quads([&](std::size_t k) { return i(k).place.data(); });
     const auto place_j = load_quads([&](std::size_t k) { return j(k).place.data(); });
     const Triple<Pack> branch{place_j[0] - place_i[0], place_j[1] - place_i[1], place_j[2] - place_i[2]};
-    const PairConstants<Pack> c = constants_of_lanes(in.materials, pairs, number, lane);
+    PairConstants<Pack> c;
+    fill_constants(c, in.materials, pairs, number, lane);
     const Pack form = with_part<NormalLaws>(law.normal, [&](auto part) -> Pack { return part.form_overlap(c); });
     const Pack distance = square_root(dot(branch, branch)), gap = distance - place_i[3] - place_j[3] + form;
     approach.gap = std::min(approach.gap, double(std::experimental::hmin(gap)));
@@ -234,7 +254,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
 
   LaneTouch r;
   PairConstants<Pack>& c = r.constants;
-  c = constants_of_lanes(in.materials, pairs, number, lane);
+  fill_constants(c, in.materials, pairs, number, lane);
 
   const Triple<Pack> branch{x_j - x_i, y_j - y_i, z_j - z_i};
   const Pack distance = square_root(dot(branch, branch));
@@ -307,6 +327,16 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   return any_of(hold);
 }
 
+// What a block will load that its neighbours in memory do not.
+inline void prefetch(const ForceInput& in, const Block& block, const ForceOutput& out) {
+  for (std::size_t k = 0; k < PairContacts::width; ++k) {
+    const GrainRow& row = in.grains[block.second[k]];
+    __builtin_prefetch(&row);
+    __builtin_prefetch(&row.spin);
+    __builtin_prefetch(&out.forces[block.second[k]], 1);
+  }
+}
+
 // A block: level, law, impulses. Says by its head whether one of its lanes is a contact. One that has just woken acts from now on,
 // not since it was looked at last.
 template <class Law, bool Keep>
@@ -316,8 +346,9 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
   constexpr std::size_t packs = PairContacts::width / pack_width;
   const Block& block = pairs.block[number];
   PairContacts::Head& head = pairs.head[number];
-  std::array<LaneTouch, packs> lanes;
-  for (std::size_t p = 0; p < packs; ++p) lanes[p] = touch_of_lanes(in, pairs, number, p * pack_width);
+  const auto lanes = [&]<std::size_t... P>(std::index_sequence<P...>) {
+    return std::array<LaneTouch, packs>{touch_of_lanes(in, pairs, number, P * pack_width)...};
+  }(std::make_index_sequence<packs>{});
   double advance = advance_of(in, 0), steps = 1;
   if (levels_in_use(in)) {
     const std::uint8_t before = head.level;
@@ -367,6 +398,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
     } else if (head.level > in.due) {
       continue;
     }
+    if (b + 1 < chunk.end && pairs.head[b + 1].acts) prefetch(in, pairs.block[b + 1], out);
     evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk.recorded);
     head.wake = in.odometer;
     evaluations += {1, std::uint64_t{1} << head.level, 0, 0};
@@ -477,11 +509,9 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
     constants[k] = &curved[k];
   }
   PairConstants<Pack> c;
-  const auto gather_from = [&](const auto& table) {
-    return [&](std::size_t m) { return gather([&](std::size_t k) { return constants[k]->*table[m]; }); };
-  };
-  fill(c, material_constants<Pack>, gather_from(material_constants<double>));
-  fill(c, contact_constants<Pack>, gather_from(contact_constants<double>));
+  const auto of_slots = [&](auto member, std::size_t) { return gather([&](std::size_t k) { return constants[k]->*member(); }); };
+  fill_materials(c, of_slots);
+  fill_contacts(c, of_slots);
 
   const auto [x, y, z, radius] = load_quads([&](std::size_t k) { return grain(k).place.data(); });
   const auto [v_x, v_y, v_z, inverse_radius] = load_quads([&](std::size_t k) { return grain(k).motion.data(); });
@@ -668,10 +698,52 @@ void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, W
     evaluate_wall_chunk<Law, Keep>(law, in, walls, walls.chunk[w], out);
 }
 
+// What pairs of other chunks do to the grains of this one.
+void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, const ForceOutput& out) {
+  for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < pairs.chunk[chunk].incoming_end; ++k) {
+    const PairContacts::Incoming& in = pairs.incoming[k];
+    const PairContacts::Head& head = pairs.head[in.block];
+    if (head.asleep || head.level > due) continue;
+    out.asked[in.row] = std::min(out.asked[in.row], head.level);
+    if (!head.acts) continue;
+    out.forces[in.row].force += pairs.crossing[in.crossing].force;
+    out.forces[in.row].torque += pairs.crossing[in.crossing].torque;
+  }
+}
+
+void wait_for(PairContacts::Chunk& chunk) {
+  const std::atomic_ref<std::uint8_t> pending(chunk.pending);
+  for (int spins = 0; pending.load(std::memory_order_acquire) != 0; ++spins)
+    if (spins > 100) std::this_thread::yield();
+}
+
+// Each thread takes the next chunk, evaluates it, and finishes the one that it evaluated before. It waits for nothing between
+// taking a chunk and having evaluated it, and chunks are taken in ascending order: so what it waits for in finishing, chunks
+// before its own, is being evaluated, and it waits hardly ever.
 template <class Law, bool Keep>
-double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out) {
-#pragma omp parallel for schedule(dynamic, 1) if (in.due_chunks.size() >= few_chunks)
-  for (std::size_t k = 0; k < in.due_chunks.size(); ++k) evaluate_chunk<Law, Keep>(law, in, pairs, walls, in.due_chunks[k], out);
+double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out,
+                    const std::function<void(std::size_t)>& finish) {
+  const std::size_t count = in.due_chunks.size();
+  for (const std::uint32_t number : in.due_chunks) pairs.chunk[number].pending = 1;
+#pragma omp parallel if (count >= few_chunks)
+  {
+    const auto complete = [&](std::size_t k) {
+      const std::uint32_t number = in.due_chunks[k];
+      for (const std::uint32_t sender : pairs.chunk[number].senders) wait_for(pairs.chunk[sender]);
+      add_crossing(pairs, number, in.due, out);
+      finish(k);
+    };
+    std::size_t before = count;
+#pragma omp for schedule(monotonic : dynamic, 1) nowait
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t number = in.due_chunks[k];
+      evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, out);
+      std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
+      if (before < count) complete(before);
+      before = k;
+    }
+    if (before < count) complete(before);
+  }
   double largest_overlap = 0;
   for (const std::uint32_t number : in.due_chunks) {
     largest_overlap = std::max(largest_overlap, pairs.chunk[number].largest_overlap);
@@ -689,20 +761,20 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
 
 template <class Law>
 double evaluate_all(const Law& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls,
-                    const ForceOutput& out) {
-  return keep_ledger ? evaluate_all<Law, true>(law, in, pairs, walls, out)
-                     : evaluate_all<Law, false>(law, in, pairs, walls, out);
+                    const ForceOutput& out, const std::function<void(std::size_t)>& finish) {
+  return keep_ledger ? evaluate_all<Law, true>(law, in, pairs, walls, out, finish)
+                     : evaluate_all<Law, false>(law, in, pairs, walls, out, finish);
 }
 
 }  // namespace
 
 double evaluate_contacts(const LawChoice& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls,
-                         const ForceOutput& out) {
+                         const ForceOutput& out, const std::function<void(std::size_t)>& finish) {
   double overlap = 0;
   const bool compiled = [&]<class... Fixed>(std::type_identity<std::tuple<Fixed...>>) {
-    return ((law == choice_of<Fixed>() && (overlap = evaluate_all(Fixed{}, keep_ledger, in, pairs, walls, out), true)) || ...);
+    return ((law == choice_of<Fixed>() && (overlap = evaluate_all(Fixed{}, keep_ledger, in, pairs, walls, out, finish), true)) || ...);
   }(std::type_identity<FixedLaws>{});
-  return compiled ? overlap : evaluate_all(law, keep_ledger, in, pairs, walls, out);
+  return compiled ? overlap : evaluate_all(law, keep_ledger, in, pairs, walls, out, finish);
 }
 
 void book_second_half(const ForceInput& in, PairContacts& pairs, const WallContacts& walls) {

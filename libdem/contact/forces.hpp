@@ -1,5 +1,7 @@
 // The one hot loop: every contact of the run that is due through its law.
 #pragma once
+#include <functional>
+
 #include "libdem/contact/contact_store.hpp"
 #include "libdem/contact/laws.hpp"
 
@@ -30,24 +32,17 @@ struct ForceOutput {
 };
 
 // Evaluates all contacts that are due with the law; memory and, where one is kept, the ledger sums of the stores' chunks change.
-// The rows of grains that are due receive the sums over these contacts, but for those that cross from other chunks, which
-// add_crossing() adds. Returns the largest overlap over the smaller radius. Results do not depend on the number of threads.
-// Throws PhysicsError where a sphere touches one wall in more places than WallCandidate::capacity.
+// The rows of grains that are due receive the sums over these contacts. Returns the largest overlap over the smaller radius.
+//
+// Calls finish(d) once for each of the due chunks, by its row in ForceInput::due_chunks, when all forces on its grains are there:
+// as soon as that is, while they are still in a cache, from whichever thread. Pairs belong to the chunk of their first grain and
+// the second comes later, so contacts that are still to be evaluated then do not look at that chunk's grains: finish may move
+// them.
+//
+// Results do not depend on the number of threads. Throws PhysicsError where a sphere touches one wall in more places than
+// WallCandidate::capacity.
 double evaluate_contacts(const LawChoice& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls,
-                         const ForceOutput& out);
-
-// Of one chunk of grains.
-inline void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, const ForceOutput& out) {
-  for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < pairs.chunk[chunk].incoming_end; ++k) {
-    const PairContacts::Incoming& in = pairs.incoming[k];
-    const PairContacts::Head& head = pairs.head[in.block];
-    if (head.asleep || head.level > due) continue;
-    out.asked[in.row] = std::min(out.asked[in.row], head.level);
-    if (!head.acts) continue;
-    out.forces[in.row].force += pairs.crossing[in.crossing].force;
-    out.forces[in.row].torque += pairs.crossing[in.crossing].torque;
-  }
-}
+                         const ForceOutput& out, const std::function<void(std::size_t)>& finish);
 
 // After the grains that were due have taken their impulses: the other half of the work (ledger.hpp) of what was evaluated last,
 // added to the ledger sums of the pairs' chunks.

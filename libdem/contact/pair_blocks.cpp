@@ -119,11 +119,14 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
     pairs.chunk[c].incoming_end = incoming[c + 1];
   }
   pairs.incoming.resize(incoming[chunks]);
-  for (const PairContacts::Chunk& chunk : pairs.chunk)
-    for (std::uint32_t b = chunk.inner_end; b < chunk.end; ++b)
+  for (std::uint32_t c = 0; c < chunks; ++c)
+    for (std::uint32_t b = pairs.chunk[c].inner_end; b < pairs.chunk[c].end; ++b)
       for (std::uint32_t k = 0; k < width; ++k)
-        if (const std::uint32_t j = lanes[b * width + k][1]; j < grains.size())
+        if (const std::uint32_t j = lanes[b * width + k][1]; j < grains.size()) {
           pairs.incoming[incoming[chunk_of(j)]++] = {j, pairs.head[b].crossing + k, b};
+          std::vector<std::uint32_t>& senders = pairs.chunk[chunk_of(j)].senders;
+          if (senders.empty() || senders.back() != c) senders.push_back(c);
+        }
 
 #pragma omp parallel for schedule(static)
   for (std::size_t b = 0; b < blocks; ++b) {

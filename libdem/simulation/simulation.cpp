@@ -70,6 +70,12 @@ struct Simulation::Engine {
   // goes on like this.
   std::vector<double> chunk_speed, chunk_jolt;
   double foresight = 0;  // m, upper bound of what the odometer gains until all are due again
+  // Of each chunk's grains when it was due last: their largest compressive force, N, and how many are above the watched one.
+  struct Pressed {
+    double largest = 0;
+    std::uint32_t watched = 0;
+  };
+  std::vector<Pressed> pressed;
   std::vector<double> closing_jolt;  // [chunks] m/s, by how much two bodies' speeds may change until then, when all were due last
   Effort effort;
 
@@ -123,8 +129,7 @@ struct Simulation::Engine {
         speed = std::max(speed, grains.rows[r].velocity().cwiseAbs().maxCoeff());
       }
       foresee();
-      evaluate(true, true);
-      finish_forces(false);
+      evaluate(true, true, false);
       sum_wall_loads();
       begin_window();  // windows cover the steps after the start
       for (std::size_t w = 0; w < loads.size(); ++w) last_power[w] = power_into_grains(w);
@@ -204,9 +209,20 @@ struct Simulation::Engine {
   }
   ForceOutput force_output() { return {grains.forces, grains.asked}; }
 
-  void evaluate(bool look, bool record) {
-    const double overlap = evaluate_contacts(setup.law, setup.keep_ledger, force_input(look, record), pairs, walls, force_output());
-    window.largest_overlap = std::max(window.largest_overlap, overlap);
+  // Forces on every grain that is due; gives it its level and, if asked to, moves it.
+  void evaluate(bool look, bool record, bool move) {
+    const auto finish = [&](std::size_t d) { setup.levels == 0 ? finish_chunk<false>(d, move) : finish_chunk<true>(d, move); };
+    window.largest_overlap = std::max(window.largest_overlap, evaluate_with(look, record, finish));
+    std::uint32_t watched = 0;
+    for (const std::uint32_t c : due_chunks) {
+      window.largest_compressive_force = std::max(window.largest_compressive_force, pressed[c].largest);
+      watched += pressed[c].watched;
+    }
+    if (all_due()) window.most_watched = std::max(window.most_watched, watched);
+  }
+  template <class Finish>
+  double evaluate_with(bool look, bool record, Finish finish) {
+    return evaluate_contacts(setup.law, setup.keep_ledger, force_input(look, record), pairs, walls, force_output(), finish);
   }
 
   template <class F>
@@ -237,6 +253,7 @@ struct Simulation::Engine {
     chunk_level.assign(chunks_of(size()), 0);  // all are due where lists are built
     chunk_speed.assign(chunks_of(size()), 0.0);
     chunk_jolt.assign(chunks_of(size()), 0.0);
+    pressed.assign(chunks_of(size()), {});
     closing_jolt.assign(chunks_of(size()), largest(closing_jolt));  // whose grains are in other chunks now
     find_due();
   }
@@ -318,49 +335,40 @@ struct Simulation::Engine {
     if (lasted > 2000) skin = std::max(0.8 * skin, 0.05 * mean_radius);
   }
 
-  // Completes the sums of forces on every grain that is due, gives it its level and, if asked to, moves it.
-  void finish_forces(bool move) { setup.levels == 0 ? finish_forces<false>(move) : finish_forces<true>(move); }
+  // What evaluate() does to the grains of a chunk that are due, when the contacts' forces on them are there.
   template <bool Levels>
-  void finish_forces(bool move) {
-    double largest_compressive = 0;
-    std::uint32_t watched = 0;
-    const std::size_t n = size();
+  void finish_chunk(std::size_t d, bool move) {
+    const std::uint32_t c = due_chunks[d];
     const Vec4 gravity = quad(setup.gravity, 0);
-    const ForceOutput out = force_output();
-#pragma omp parallel for schedule(static) reduction(max : largest_compressive) reduction(+ : watched) if (due_chunks.size() >= few_chunks)
-    for (std::size_t d = 0; d < due_chunks.size(); ++d) {
-      const std::uint32_t c = due_chunks[d];
-      add_crossing(pairs, c, due, out);
-      Motion motion;
-      std::uint8_t finest = setup.levels;
-      double gravity_shift = 0;
-      for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, n); ++i) {
-        Vec4 weight = grains.mass[i] * gravity;
-        if constexpr (Levels) {
-          std::uint8_t& level = grains.level[i];
-          if (level > due) {
-            finest = std::min(finest, level);
-            continue;
-          }
-          const std::uint8_t before = level;
-          level = std::min(grains.asked[i], due);
+    Motion motion;
+    Pressed now;
+    std::uint8_t finest = setup.levels;
+    double gravity_shift = 0;
+    for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i) {
+      Vec4 weight = grains.mass[i] * gravity;
+      if constexpr (Levels) {
+        std::uint8_t& level = grains.level[i];
+        if (level > due) {
           finest = std::min(finest, level);
-          gravity_shift += 0.5 * (stride(level) - stride(before)) * weight.dot(grains.rows[i].motion);
-          weight *= stride(level);
+          continue;
         }
-        grains.forces[i].force += weight;
-        const double pressed = grains.forces[i].force[3];
-        largest_compressive = std::max(largest_compressive, pressed);
-        watched += pressed > setup.watch_force ? 1 : 0;
-        if (move) kick_and_drift<Levels>(i, motion);
+        const std::uint8_t before = level;
+        level = std::min(grains.asked[i], due);
+        finest = std::min(finest, level);
+        gravity_shift += 0.5 * (stride(level) - stride(before)) * weight.dot(grains.rows[i].motion);
+        weight *= stride(level);
       }
-      chunk_level[c] = finest;
-      // A grain that changes its level falls for another time than its weight acts.
-      pairs.chunk[c].ledger.time_stepping -= setup.step * gravity_shift;
-      if (move) remember(motion, c);
+      grains.forces[i].force += weight;
+      const double force = grains.forces[i].force[3];
+      now.largest = std::max(now.largest, force);
+      now.watched += force > setup.watch_force ? 1 : 0;
+      if (move) kick_and_drift<Levels>(i, motion);
     }
-    window.largest_compressive_force = std::max(window.largest_compressive_force, largest_compressive);
-    if (all_due()) window.most_watched = std::max(window.most_watched, watched);
+    pressed[c] = now;
+    chunk_level[c] = finest;
+    // A grain that changes its level falls for another time than its weight acts.
+    pairs.chunk[c].ledger.time_stepping -= setup.step * gravity_shift;
+    if (move) remember(motion, c);
   }
 
   // Largest components of velocities and of what changes them until all are due again.
@@ -501,7 +509,6 @@ struct Simulation::Engine {
     find_due();
     move_all();
     if (setup.keep_ledger) book_second_half();
-    watch.add_to(effort.motion);
     for (std::uint64_t k = 1; k <= steps; ++k) {
       ++step;
       ++effort.steps;
@@ -517,11 +524,9 @@ struct Simulation::Engine {
         }
       }
       watch.add_to(effort.rest);
-      evaluate(false, k == steps);
-      watch.add_to(effort.contacts);
+      evaluate(false, k == steps, k < steps);
+      watch.add_to(effort.stepping);
       if (!(window.largest_overlap < runaway_overlap)) stop();
-      finish_forces(k < steps);
-      watch.add_to(effort.motion);
       count_evaluations();
       if (setup.keep_ledger) {
         book_first_half();
@@ -549,7 +554,7 @@ struct Simulation::Engine {
     due = setup.levels;
     due_chunks.resize(chunk_level.size());
     std::iota(due_chunks.begin(), due_chunks.end(), 0U);
-    evaluate(true, true);  // so that the last frame shows the forces
+    evaluate_with(true, true, [](std::size_t) {});  // so that the last frame shows the forces
     stop_for_overlap(guarded());
   }
 

@@ -181,9 +181,9 @@ struct Effort {
   std::uint64_t steps = 0;
   Evaluations evaluations;
   std::uint64_t lists = 0;  // built
-  // s of wall time: contacts through their law, sums and motion of the grains, lists, the rest (walls' poses and loads, ledger).
-  double contacts = 0, motion = 0, listing = 0, rest = 0;
-  double total() const { return contacts + motion + listing + rest; }
+  // s of wall time: contacts and, with them, the motion of the grains; lists; the rest (walls' poses and loads, ledger).
+  double stepping = 0, listing = 0, rest = 0;
+  double total() const { return stepping + listing + rest; }
 };
 
 class Simulation {
