@@ -1,12 +1,13 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Runs jamscope, LAMMPS and LIGGGHTS in turn on the same settled bed with the same step and prints grain steps per second.
 
     tests/bench/peers/compare.py build/jamscope [--beads 35000] [--rounds 3] [--json FILE]
 
 Needs: apt-get install lammps liggghts openmpi-bin python3-h5py. The bed is that of data/cases/ft4_c_down.toml (E = 63 MPa, the
 step of 1e-6 s that all codes bear) around a blade half way down; jamscope settles it once and keeps it. Every round runs each
-code on one core, then on two. What differs between the codes is said in in.lammps and in.liggghts; LAMMPS leaves out the grains
-that would stand in its plates. Medians, and jamscope's over theirs from the same round.
+code on one core, then on two. The peers' blade is two leaning plates of its size (LAMMPS has no meshes), and they leave out the
+grains that would stand in them; how else they differ is said in in.lammps and in.liggghts. Medians, and jamscope's over theirs
+from the same round.
 """
 import argparse
 import json
@@ -56,11 +57,21 @@ def in_plates(grain, blade):
     return any(abs(y - side * z) / 2 ** 0.5 < 0.7e-3 / 2 ** 0.5 + radius for side in near)
 
 
-def write_stl(path, vertices, triangles):
+def write_plates(path, stations=12):
+    """The two plates of in.lammps as a mesh for LIGGGHTS, which takes no mesh with triangles as slender as jamscope's blade has."""
+    triangles = []
+    for side in (1, -1):
+        corners = [(side * y, z) for y, z in ((-3.7e-3, -3e-3), (-2.3e-3, -3e-3), (3.7e-3, 3e-3), (2.3e-3, 3e-3))]
+        rings = [[(side * 0.01115 * k / stations, y, z) for y, z in corners] for k in range(stations + 1)]
+        for near, far in zip(rings, rings[1:]):
+            for k in range(4):
+                a, b, c, d = near[k], near[(k + 1) % 4], far[(k + 1) % 4], far[k]
+                triangles += [(a, b, c), (a, c, d)]
+        for a, b, c, d in (rings[0][::-1], rings[-1]):
+            triangles += [(a, b, c), (a, c, d)]
     with open(path, "w") as out:
-        out.write("solid blade\n")
-        for triangle in triangles:
-            a, b, c = (vertices[k] for k in triangle)
+        out.write("solid plates\n")
+        for a, b, c in triangles:
             u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
             normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
             size = sum(n * n for n in normal) ** 0.5
@@ -68,30 +79,27 @@ def write_stl(path, vertices, triangles):
             for point in (a, b, c):
                 out.write("vertex " + " ".join(f"{p:.9e}" for p in point) + "\n")
             out.write("endloop\nendfacet\n")
-        out.write("endsolid blade\n")
+        out.write("endsolid plates\n")
 
 
 def settle(jamscope, beads, folder):
-    """Writes the bed and the blade for the peers; returns the blade's height, m, and what stands in the files."""
+    """Writes the bed and the plates for the peers; returns the height of the plates' middle, m, the grains and those written."""
     run = folder / "run"
     subprocess.run([jamscope, "simulate", CASE, "-o", run, "--until", f"{10 * STEP} s", "--quiet", *case_options(beads)], check=True)
     with h5py.File(run / "run.h5", "r", swmr=True) as file:
         count = int(file["/frames/particle_count"][0])
         places, radii = file["/particles/position"][:count], file["/particles/radius"][:count]
         blade = next(wall for wall in file["/walls"].values() if wall.attrs["role"].decode().rstrip("\0") == "blade")
-        vertices, triangles = blade["vertices"][:].tolist(), blade["triangles"][:].tolist()
-        height = float(blade["pose_position"][0][2])
+        middle = float(blade["pose_position"][0][2])
     grains = [(*map(float, place), float(radius)) for place, radius in zip(places, radii)]
-    middle = height + 3e-3
     kept = [grain for grain in grains if not in_plates(grain, middle)]
-    write_bed(folder / "whole.data", grains, "settled by jamscope")
-    write_bed(folder / "plates.data", kept, "settled by jamscope, less what stands in the plates")
-    write_stl(folder / "blade.stl", vertices, triangles)
-    return height, middle, len(grains), len(kept)
+    write_bed(folder / "bed.data", kept, "settled by jamscope, less what stands in the plates")
+    write_plates(folder / "plates.stl")
+    return middle, len(grains), len(kept)
 
 
-def peer(program, script, cores, folder, grains, steps, warm, **values):
-    variables = {"px": cores, "modulus": MODULUS, "skin": SKIN, "step": STEP, "warm": warm, "steps": steps, **values}
+def peer(program, script, cores, folder, grains, steps, **values):
+    variables = {"px": cores, "modulus": MODULUS, "skin": SKIN, "step": STEP, "warm": 100, "steps": steps, **values}
     command = [program, "-in", HERE / script, "-log", "none"]
     for name, value in variables.items():
         command += ["-var", name, str(value)]
@@ -130,17 +138,16 @@ def main():
     numbers = {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        height, middle, grains, kept = settle(jamscope, options.beads, folder)
-        print(f"{grains} grains, {kept} of them outside LAMMPS's plates; step {STEP} s", file=sys.stderr)
+        middle, grains, kept = settle(jamscope, options.beads, folder)
+        print(f"{grains} grains, {kept} of them outside the peers' plates; step {STEP} s", file=sys.stderr)
         for turn in range(options.rounds):
             for cores in (1, 2):
                 steps = lambda speed: max(50, int(options.seconds * speed * cores / grains))
                 rates = {
                     "jamscope": ours(jamscope, cores, options.beads, options.seconds, ["--uniform"]),
-                    "lammps": peer("lmp", "in.lammps", cores, folder, kept, steps(2.5e6), 100, bed="plates.data",
-                                   blade=middle, surface_energy=SURFACE_ENERGY),
-                    "liggghts": peer("liggghts", "in.liggghts", cores, folder, grains, steps(5e6), 100, bed="whole.data",
-                                     blade=height, stl="blade.stl"),
+                    "lammps": peer("lmp", "in.lammps", cores, folder, kept, steps(2.5e6), blade=middle,
+                                   surface_energy=SURFACE_ENERGY),
+                    "liggghts": peer("liggghts", "in.liggghts", cores, folder, kept, steps(5e6), blade=middle),
                 }
                 for code, rate in rates.items():
                     numbers.setdefault(code, {}).setdefault(cores, []).append(rate)
