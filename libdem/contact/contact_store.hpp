@@ -29,6 +29,16 @@ struct PairForce {
   double elastic, damping;  // N along the normal, > 0 pushes apart
 };
 
+// What decides whether a block of pairs, or a grain near a wall, has to be looked at: few bytes, as most need not. One that does
+// not act and is asleep has no level: it is looked at when all levels are due and the odometer (ForceInput) may come to `wake`, m,
+// before they are again.
+struct Activity {
+  bool acts = false;  // there is a contact
+  bool asleep = true;
+  std::uint8_t level = 0;
+  double wake = -std::numeric_limits<double>::infinity();
+};
+
 // Pairs of grains that touch or may touch before the list is built again, in blocks of eight lanes. A pair keeps its lane until
 // then; the sums of forces go in the order of the lanes. Lanes that are left over hold a phantom as their second grain.
 struct PairContacts {
@@ -43,19 +53,14 @@ struct PairContacts {
   struct alignas(64) RollingSprings {
     std::array<Column, 3> torque{};  // N m, elastic part of the one on the first grain
   };
-  // What decides whether a block has to be looked at. One that does not act and is asleep has no level: it is looked at when
-  // all levels are due and the odometer (ForceInput) may come to `wake`, m, before they are again.
-  struct Head {
-    bool acts = false;  // a lane is a contact
-    bool asleep = true;
-    std::uint8_t level = 0;
-    double wake = -std::numeric_limits<double>::infinity();
+  struct Kind {
     LevelScale scale;                 // the smallest of the lanes
     std::uint32_t material_pair = 0;  // index into MaterialTable::pair, of all lanes
     std::uint32_t crossing = 0;       // first row of PairContacts::crossing, of a block whose pairs cross chunks
   };
   std::vector<Block> block;
-  std::vector<Head> head;                     // [blocks]
+  std::vector<Activity> activity;             // [blocks]
+  std::vector<Kind> kind;                     // [blocks]
   std::vector<std::uint64_t> birth_step;      // [lanes]
   std::vector<RollingSprings> rolling;        // [blocks] empty where the law has none
   std::vector<LastForces> last;               // [lanes] empty where no ledger is kept
@@ -106,15 +111,13 @@ struct WallCandidate {
   // parts touches in one place, others in no more places than they have parts here.
   std::uint32_t contact_begin = 0;
   std::uint16_t size = 0, room = 0;
-  std::uint8_t level = 0;  // this and the next three as in PairContacts::Head
-  bool asleep = true;
-  double wake = -std::numeric_limits<double>::infinity();  // m
   LevelScale scale;
   PairConstants<double> constants;
 };
 
 struct WallContacts {
   std::vector<WallCandidate> candidate;  // sorted by chunk of the grain, wall, grain
+  std::vector<Activity> activity;        // [candidates]
   std::vector<std::uint32_t> parts;
   std::vector<WallContact> contact;
   std::vector<LastForces> last;  // of each contact; empty where no ledger is kept

@@ -89,7 +89,7 @@ inline void fill_contacts(PairConstants<Pack>& c, Get get) {
 }
 inline void fill_constants(PairConstants<Pack>& c, const MaterialTable& materials, const PairContacts& pairs, std::size_t number,
                            std::size_t lane) {
-  const PairConstants<double>& kind = materials.pair[pairs.head[number].material_pair];
+  const PairConstants<double>& kind = materials.pair[pairs.kind[number].material_pair];
   fill_materials(c, [&](auto member, std::size_t) { return Pack(kind.*member()); });
   fill_contacts(c, [&](auto, std::size_t m) { return load(pairs.block[number].constant[m], lane); });
 }
@@ -168,9 +168,10 @@ std::uint8_t finest_grain(const ForceInput& in, const Block& block) {
   return finest;
 }
 
-void choose_level(const ForceInput& in, const Block& block, PairContacts::Head& head, const Demand& demand, std::uint8_t above) {
+void choose_level(const ForceInput& in, const Block& block, const LevelScale& scale, Activity& activity, const Demand& demand,
+                  std::uint8_t above) {
   const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, finest_grain(in, block) + above));
-  head.level = next_level(head.level, in.due, cap, head.scale, demand);
+  activity.level = next_level(activity.level, in.due, cap, scale, demand);
 }
 
 // m/s, by how much the speed at which the bodies of a lane near each other may change until all levels are due again.
@@ -229,7 +230,7 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
     const Triple<Pack> apart{motion_j[0] - motion_i[0], motion_j[1] - motion_i[1], motion_j[2] - motion_i[2]};
     const Pack speed = absolute(dot(apart, branch) / distance);
     approach.soon |= any_of(gap < (speed + Pack(jolt)) * Pack(longest_stride(in)));
-    add_demand(in, pairs.head[number].scale, jolt, gap, Pack(0.0), speed, approach.demand);
+    add_demand(in, pairs.kind[number].scale, jolt, gap, Pack(0.0), speed, approach.demand);
   }
   return approach;
 }
@@ -310,7 +311,7 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
                [&](std::size_t k, const auto& row) { add_row(out.forces[block.first[lane + k]], row); });
   const std::array<Pack, 8> opposite{-force.x, -force.y, -force.z, pressed, torque_j.x, torque_j.y, torque_j.z, zero};
   if (crosses) {
-    ForceRow* const to = &pairs.crossing[pairs.head[number].crossing + lane];
+    ForceRow* const to = &pairs.crossing[pairs.kind[number].crossing + lane];
     for_each_row(opposite, [&](std::size_t k, const auto& row) { store_row(to[k], row); });
   } else {
     for_each_row(opposite, [&](std::size_t k, const auto& row) { add_row(out.forces[block.second[lane + k]], row); });
@@ -337,7 +338,7 @@ inline void prefetch(const ForceInput& in, const Block& block, const ForceOutput
   }
 }
 
-// A block: level, law, impulses. Says by its head whether one of its lanes is a contact. One that has just woken acts from now on,
+// A block: level, law, impulses. Says by its activity whether one of its lanes is a contact. One that has just woken acts from now on,
 // not since it was looked at last.
 template <class Law, bool Keep>
 JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, bool woken,
@@ -345,26 +346,27 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
                                      std::vector<PairForce>& recorded) {
   constexpr std::size_t packs = PairContacts::width / pack_width;
   const Block& block = pairs.block[number];
-  PairContacts::Head& head = pairs.head[number];
+  Activity& activity = pairs.activity[number];
+  const LevelScale& scale = pairs.kind[number].scale;
   const auto lanes = [&]<std::size_t... P>(std::index_sequence<P...>) {
     return std::array<LaneTouch, packs>{touch_of_lanes(in, pairs, number, P * pack_width)...};
   }(std::make_index_sequence<packs>{});
   double advance = advance_of(in, 0), steps = 1;
   if (levels_in_use(in)) {
-    const std::uint8_t before = head.level;
+    const std::uint8_t before = activity.level;
     const double jolt = jolt_of(in, block);
     Demand demand;
     for (std::size_t p = 0; p < packs; ++p)
-      add_demand(in, head.scale, jolt, -lanes[p].touch.overlap, load(block.contact_radius, p * pack_width),
+      add_demand(in, scale, jolt, -lanes[p].touch.overlap, load(block.contact_radius, p * pack_width),
                  absolute(dot(lanes[p].touch.velocity, lanes[p].touch.normal)), demand);
-    choose_level(in, block, head, demand, levels_above_contacts);
-    ask(in, block, head.level, crosses, out);
+    choose_level(in, block, scale, activity, demand, levels_above_contacts);
+    ask(in, block, activity.level, crosses, out);
     advance = advance_of(in, woken ? 0 : before);
-    steps = impulse_steps(woken ? head.level : before, head.level);
+    steps = impulse_steps(woken ? activity.level : before, activity.level);
   }
-  head.acts = false;
+  activity.acts = false;
   for (std::size_t p = 0; p < packs; ++p)
-    head.acts |= evaluate_lanes<Law, Keep>(law, in, pairs, number, p * pack_width, lanes[p], advance, steps, crosses, out,
+    activity.acts |= evaluate_lanes<Law, Keep>(law, in, pairs, number, p * pack_width, lanes[p], advance, steps, crosses, out,
                                            largest_overlap, sums, recorded);
 }
 
@@ -376,32 +378,32 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
   Evaluations evaluations;
   if (in.record) chunk.recorded.clear();
   for (std::uint32_t b = chunk.begin; b < chunk.end; ++b) {
-    PairContacts::Head& head = pairs.head[b];
-    const bool crosses = b >= chunk.inner_end, woken = !head.acts && head.asleep;
-    if (!head.acts) {
+    Activity& activity = pairs.activity[b];
+    const bool crosses = b >= chunk.inner_end, woken = !activity.acts && activity.asleep;
+    if (!activity.acts) {
       if (woken) {
-        if (!all_due(in) || in.odometer + in.foresight < head.wake) continue;
-        head.level = in.highest;
-      } else if (head.level > in.due) {
+        if (!all_due(in) || in.odometer + in.foresight < activity.wake) continue;
+        activity.level = in.highest;
+      } else if (activity.level > in.due) {
         continue;
       }
       const Approach approach = look_at(law, in, pairs, b);
-      head.asleep = approach.gap > 0 && !approach.soon;
+      activity.asleep = approach.gap > 0 && !approach.soon;
       if (approach.gap >= 0) {
-        head.wake = in.odometer + cautious * approach.gap;
-        if (!head.asleep && levels_in_use(in)) {
-          choose_level(in, pairs.block[b], head, approach.demand, levels_above_apart);
-          ask(in, pairs.block[b], head.level, crosses, out);
+        activity.wake = in.odometer + cautious * approach.gap;
+        if (!activity.asleep && levels_in_use(in)) {
+          choose_level(in, pairs.block[b], pairs.kind[b].scale, activity, approach.demand, levels_above_apart);
+          ask(in, pairs.block[b], activity.level, crosses, out);
         }
         continue;
       }
-    } else if (head.level > in.due) {
+    } else if (activity.level > in.due) {
       continue;
     }
-    if (b + 1 < chunk.end && pairs.head[b + 1].acts) prefetch(in, pairs.block[b + 1], out);
+    if (b + 1 < chunk.end && pairs.activity[b + 1].acts) prefetch(in, pairs.block[b + 1], out);
     evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk.recorded);
-    head.wake = in.odometer;
-    evaluations += {1, std::uint64_t{1} << head.level, 0, 0};
+    activity.wake = in.odometer;
+    evaluations += {1, std::uint64_t{1} << activity.level, 0, 0};
   }
   chunk.largest_overlap = std::experimental::hmax(largest_overlap);
   chunk.ledger = sums;
@@ -585,12 +587,12 @@ double normal_speed(const GrainRow& grain, const WallPose& pose, const WallTouch
   return std::abs((grain.velocity() - pose.velocity - pose.angular_velocity.cross(lever)).dot(touch.normal));
 }
 
-void choose_level(const ForceInput& in, WallCandidate& candidate, const Demand& demand, std::uint8_t above,
-                  const ForceOutput& out) {
+void choose_level(const ForceInput& in, const WallCandidate& candidate, Activity& activity, const Demand& demand,
+                  std::uint8_t above, const ForceOutput& out) {
   const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, in.level[candidate.particle] + above));
-  candidate.level = next_level(candidate.level, in.due, cap, candidate.scale, demand);
+  activity.level = next_level(activity.level, in.due, cap, candidate.scale, demand);
   std::uint8_t& asked = out.asked[candidate.particle];
-  asked = std::min(asked, candidate.level);
+  asked = std::min(asked, activity.level);
 }
 
 Demand demand_of(const WallContacts& walls, const WallCandidate& candidate, const GrainRow& grain, const WallPose& pose) {
@@ -621,14 +623,15 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
   chunk.evaluations = Evaluations{};
   const auto block = [&] { evaluate_wall_block<Law, Keep>(law, in, slot, count, chunk, out, sums); };
   for (std::uint32_t q = chunk.begin; q < chunk.end; ++q) {
-    WallCandidate& candidate = walls.candidate[q];
-    const bool away = candidate.size == 0, woken = away && candidate.asleep;
+    Activity& activity = walls.activity[q];
+    const bool away = !activity.acts, woken = away && activity.asleep;
     if (woken) {
-      if (!all_due(in) || in.odometer + in.foresight < candidate.wake) continue;
-      candidate.level = in.highest;
-    } else if (candidate.level > in.due) {
+      if (!all_due(in) || in.odometer + in.foresight < activity.wake) continue;
+      activity.level = in.highest;
+    } else if (activity.level > in.due) {
       continue;
     }
+    WallCandidate& candidate = walls.candidate[q];
     const GrainRow& grain = in.grains[candidate.particle];
     // Where nothing is near, look as far as the list does, to know for how long.
     const double reach = grain.radius() - last_overlap(law, in, candidate);
@@ -642,10 +645,10 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
         gap = std::min(gap, touch.distance - reach);
         if (levels_in_use(in)) speed = std::max(speed, normal_speed(grain, pose, touch));
       }
-      candidate.asleep = gap > in.foresight;
+      activity.asleep = gap > in.foresight;
       if (gap > 0) {
-        candidate.wake = in.odometer + cautious * gap;
-        if (!candidate.asleep && levels_in_use(in)) choose_level(in, candidate, {0, speed, speed}, levels_above_apart, out);
+        activity.wake = in.odometer + cautious * gap;
+        if (!activity.asleep && levels_in_use(in)) choose_level(in, candidate, activity, {0, speed, speed}, levels_above_apart, out);
         continue;
       }
       std::erase_if(touches, [&](const WallTouch& touch) { return touch.distance > reach; });
@@ -654,18 +657,19 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       chunk.overflow = true;
       touches.resize(candidate.room);
     }
-    const std::uint8_t before = candidate.level;
+    const std::uint8_t before = activity.level;
     inherit(walls, candidate, touches, [&](const WallContact& ended, const LastForces& last) {
       if constexpr (Keep)
         book_end(law, ended, last, constants_of(in, candidate, ended), grain, advance_of(in, before), chunk.ledger);
     });
-    if (candidate.size == 0) candidate.wake = in.odometer;
+    activity.acts = candidate.size > 0;
+    if (!activity.acts) activity.wake = in.odometer;
     double steps = 1;
     if (levels_in_use(in)) {
-      choose_level(in, candidate, demand_of(walls, candidate, grain, pose), levels_above_contacts, out);
-      steps = impulse_steps(woken ? candidate.level : before, candidate.level);
+      choose_level(in, candidate, activity, demand_of(walls, candidate, grain, pose), levels_above_contacts, out);
+      steps = impulse_steps(woken ? activity.level : before, activity.level);
     }
-    chunk.evaluations += {0, 0, candidate.size, std::uint64_t{candidate.size} << candidate.level};
+    chunk.evaluations += {0, 0, candidate.size, std::uint64_t{candidate.size} << activity.level};
     for (std::size_t t = 0; t < candidate.size; ++t) {
       const std::size_t row = candidate.contact_begin + t;
       slot[count++] = {&candidate, &walls.contact[row], Keep ? &walls.last[row] : nullptr, advance_of(in, woken ? 0 : before), steps};
@@ -702,10 +706,10 @@ void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, W
 void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, const ForceOutput& out) {
   for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < pairs.chunk[chunk].incoming_end; ++k) {
     const PairContacts::Incoming& in = pairs.incoming[k];
-    const PairContacts::Head& head = pairs.head[in.block];
-    if (head.asleep || head.level > due) continue;
-    out.asked[in.row] = std::min(out.asked[in.row], head.level);
-    if (!head.acts) continue;
+    const Activity& activity = pairs.activity[in.block];
+    if (activity.asleep || activity.level > due) continue;
+    out.asked[in.row] = std::min(out.asked[in.row], activity.level);
+    if (!activity.acts) continue;
     out.forces[in.row].force += pairs.crossing[in.crossing].force;
     out.forces[in.row].torque += pairs.crossing[in.crossing].torque;
   }
@@ -784,7 +788,7 @@ void book_second_half(const ForceInput& in, PairContacts& pairs, const WallConta
     PairContacts::Chunk& chunk = pairs.chunk[number];
     chunk.ledger = LedgerSums{};
     for (std::uint32_t b = chunk.begin; b < chunk.end; ++b) {
-      if (!pairs.head[b].acts || pairs.head[b].level > in.due) continue;
+      if (!pairs.activity[b].acts || pairs.activity[b].level > in.due) continue;
       for (std::size_t lane = PairContacts::width * b; lane < PairContacts::width * (b + 1); ++lane) {
         if (!pairs.acts(lane)) continue;
         const GrainRow &i = in.grains[pairs.first(lane)], &j = in.grains[pairs.second(lane)];
@@ -795,7 +799,7 @@ void book_second_half(const ForceInput& in, PairContacts& pairs, const WallConta
       for (std::uint32_t q = walls.chunk[w].begin; q < walls.chunk[w].end; ++q) {
         const WallCandidate& c = walls.candidate[q];
         const GrainRow& grain = in.grains[c.particle];
-        for (std::size_t k = c.contact_begin; k < c.contact_begin + c.size && c.level <= in.due; ++k) {
+        for (std::size_t k = c.contact_begin; k < c.contact_begin + c.size && walls.activity[q].level <= in.due; ++k) {
           const LastForces& last = walls.last[k];
           if (walls.contact[k].acts()) chunk.ledger += half_of_work(last, grain.velocity(), grain.angular_velocity(), last.wall_spin);
         }

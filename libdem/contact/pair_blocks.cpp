@@ -88,7 +88,8 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
   PairContacts pairs;
   const std::size_t blocks = lanes.size() / width, chunks = chunks_of(grains.size());
   pairs.block.resize(blocks);
-  pairs.head.resize(blocks);
+  pairs.activity.resize(blocks);
+  pairs.kind.resize(blocks);
   pairs.birth_step.assign(lanes.size(), 0);
   if (rolling_spring) pairs.rolling.resize(blocks);
   if (keep_ledger) pairs.last.resize(lanes.size());
@@ -105,7 +106,7 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
         chunk.inner_end = std::uint32_t(at + 1);
         continue;
       }
-      pairs.head[at].crossing = crossing;
+      pairs.kind[at].crossing = crossing;
       crossing += width;
       for (std::size_t k = 0; k < width; ++k)
         if (const std::uint32_t j = lanes[at * width + k][1]; j < grains.size()) ++incoming[chunk_of(j) + 1];
@@ -123,7 +124,7 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
     for (std::uint32_t b = pairs.chunk[c].inner_end; b < pairs.chunk[c].end; ++b)
       for (std::uint32_t k = 0; k < width; ++k)
         if (const std::uint32_t j = lanes[b * width + k][1]; j < grains.size()) {
-          pairs.incoming[incoming[chunk_of(j)]++] = {j, pairs.head[b].crossing + k, b};
+          pairs.incoming[incoming[chunk_of(j)]++] = {j, pairs.kind[b].crossing + k, b};
           std::vector<std::uint32_t>& senders = pairs.chunk[chunk_of(j)].senders;
           if (senders.empty() || senders.back() != c) senders.push_back(c);
         }
@@ -135,7 +136,7 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
       return BodyConstants{grains.rows[i].radius(), grains.mass[i], grains.inertia[i]};
     };
     const std::uint32_t kind = material_pair(grains, materials.size, lanes[b * width][0], lanes[b * width][1]);
-    pairs.head[b].material_pair = kind;
+    pairs.kind[b].material_pair = kind;
     for (std::size_t k = 0; k < width; ++k) {
       const auto [i, j] = lanes[b * width + k];
       block.first[k] = i;
@@ -143,7 +144,7 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
       const PairConstants<double> c = pair_constants(materials.pair[kind], body(i), body(j < grains.size() ? j : i));
       for (std::size_t m = 0; m < constants_per_contact; ++m) block.constant[m][k] = c.*contact_constants<double>[m];
       const LevelScale scale = level_scale(c, resolution);
-      LevelScale& least = pairs.head[b].scale;
+      LevelScale& least = pairs.kind[b].scale;
       least = k == 0 ? scale : LevelScale{std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
     }
   }

@@ -112,9 +112,9 @@ PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const G
         const LastForces& last = memory.last[std::size_t(known)];
         pairs.last[lane] = turned ? swapped(last) : last;
       }
-      pairs.head[b].acts = true;
-      pairs.head[b].asleep = false;
-      pairs.head[b].level = c.level;
+      pairs.activity[b].acts = true;
+      pairs.activity[b].asleep = false;
+      pairs.activity[b].level = c.level;
       ++remembered;
     }
   if (remembered != memory.pairs.size())
@@ -137,6 +137,7 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
       for (std::size_t r = number * chunk_rows; r < std::min((number + 1) * chunk_rows, n); ++r) {
         const std::uint32_t i = grains.order[r];
         WallCandidate c{};
+        Activity activity;
         c.contact_begin = std::uint32_t(fresh.contact.size());
         for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
           const State::WallPair& kept = memory.wall_pairs[k];
@@ -151,8 +152,7 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
           contact.memory = {kept.spring, kept.contact_radius, kept.birth_step};
           contact.rolling = kept.rolling;
           if (setup.keep_ledger) fresh.last.push_back(memory.wall_last[k]);
-          c.level = kept.level;
-          c.asleep = false;
+          activity = {true, false, kept.level};
           ++remembered;
         }
         const double reach = grains.rows[r].radius() + skin;
@@ -171,6 +171,7 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
                                      {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
         c.scale = level_scale(c.constants, setup.resolution());
         fresh.candidate.push_back(c);
+        fresh.activity.push_back(activity);
       }
       if (first == fresh.candidate.size()) continue;
       fresh.chunk.emplace_back();
@@ -221,7 +222,7 @@ Memory gather(const GrainStore& grains, const PairContacts& pairs, const WallCon
       const std::size_t x = lane % PairContacts::width;
       State::Pair c{order[block.first[x]], order[block.second[x]], {block.spring[0][x], block.spring[1][x], block.spring[2][x]},
                     pairs.birth_step[lane], block.contact_radius[x]};
-      c.level = pairs.head[lane / PairContacts::width].level;
+      c.level = pairs.activity[lane / PairContacts::width].level;
       if (rolling_spring) {
         const auto& rolling = pairs.rolling[lane / PairContacts::width].torque;
         c.rolling = {rolling[0][x], rolling[1][x], rolling[2][x]};
@@ -237,7 +238,7 @@ Memory gather(const GrainStore& grains, const PairContacts& pairs, const WallCon
       const WallContact& w = walls.contact[k];
       if (!w.acts()) continue;
       all.wall_pairs.push_back({order[c.particle], c.wall, w.touch.feature, w.touch.normal, w.memory.spring, w.memory.birth_step,
-                                w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature, c.level});
+                                w.memory.contact_radius, w.rolling, w.touch.distance, w.touch.curvature, walls.activity[q].level});
       if (!walls.last.empty()) all.wall_last.push_back(walls.last[k]);
     }
   }

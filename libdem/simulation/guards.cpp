@@ -47,7 +47,7 @@ PairGeometry geometry(const GuardInput& in, std::size_t lane) {
 }
 PairConstants<double> constants(const GuardInput& in, std::size_t lane) {
   const std::size_t b = lane / PairContacts::width, k = lane % PairContacts::width;
-  PairConstants<double> c = in.materials.pair[in.pairs.head[b].material_pair];
+  PairConstants<double> c = in.materials.pair[in.pairs.kind[b].material_pair];
   for (std::size_t m = 0; m < constants_per_contact; ++m) c.*contact_constants<double>[m] = in.pairs.block[b].constant[m][k];
   return c;
 }
@@ -144,7 +144,7 @@ std::vector<double> traces(const GuardInput& in) {
   };
   for (std::size_t lane = 0; lane < in.pairs.lanes(); ++lane) {
     if (!in.pairs.acts(lane)) continue;
-    const PairConstants<double>& c = in.materials.pair[in.pairs.head[lane / PairContacts::width].material_pair];
+    const PairConstants<double>& c = in.materials.pair[in.pairs.kind[lane / PairContacts::width].material_pair];
     add(in.pairs.first(lane), c, in.pairs.contact_radius(lane));
     add(in.pairs.second(lane), c, in.pairs.contact_radius(lane));
   }

@@ -305,15 +305,16 @@ struct Simulation::Engine {
         !std::all_of(layout.wall_level.begin(), layout.wall_level.end(), known) ||
         !std::all_of(layout.grain_level.begin(), layout.grain_level.end(), known))
       throw CaseError("the stored state has levels that do not fit its contacts");
-    const auto restore = [&](auto& head, std::uint8_t level, double wake) {
-      head.asleep = level == State::Layout::asleep_level;
-      head.level = head.asleep ? 0 : std::min(level, setup.levels);
-      head.wake = wake;
+    const auto restore = [&](Activity& activity, std::uint8_t level, double wake) {
+      activity.asleep = level == State::Layout::asleep_level;
+      activity.level = activity.asleep ? 0 : std::min(level, setup.levels);
+      activity.wake = wake;
     };
     for (std::size_t r = 0; r < size(); ++r) grains.level[r] = std::min(layout.grain_level[r], setup.levels);
-    for (std::size_t b = 0; b < blocks; ++b) restore(pairs.head[b], layout.block_level[b], layout.block_wake[b]);
-    std::map<std::pair<std::uint32_t, std::uint32_t>, WallCandidate*> candidate;
-    for (WallCandidate& c : walls.candidate) candidate[{c.particle, c.wall}] = &c;
+    for (std::size_t b = 0; b < blocks; ++b) restore(pairs.activity[b], layout.block_level[b], layout.block_wake[b]);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Activity*> candidate;
+    for (std::size_t q = 0; q < walls.candidate.size(); ++q)
+      candidate[{walls.candidate[q].particle, walls.candidate[q].wall}] = &walls.activity[q];
     for (std::size_t k = 0; k < candidates; ++k) {
       const auto found = candidate.find({layout.wall_grain[k], layout.wall[k]});
       if (found != candidate.end()) restore(*found->second, layout.wall_level[k], layout.wall_wake[k]);
@@ -611,9 +612,9 @@ std::size_t Simulation::bytes() const {
   const Particles& p = g.caller;
   return recorded + bytes_of(p.id, p.material, p.radius, p.position, p.velocity, p.angular_velocity, g.caller_mass, g.caller_inertia) +
          bytes_of(g.order, g.row_of, g.rows, g.forces, g.mass, g.inertia, g.material, g.id, g.listed, g.level, g.asked, e.kick, e.turn) +
-         bytes_of(e.pairs.block, e.pairs.head, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.crossing, e.pairs.incoming,
+         bytes_of(e.pairs.block, e.pairs.activity, e.pairs.kind, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.crossing, e.pairs.incoming,
                   e.pairs.chunk) +
-         bytes_of(e.walls.candidate, e.walls.parts, e.walls.contact, e.walls.last, e.walls.chunk, e.walls.chunk_begin);
+         bytes_of(e.walls.candidate, e.walls.activity, e.walls.parts, e.walls.contact, e.walls.last, e.walls.chunk, e.walls.chunk_begin);
 }
 double Simulation::stable_step() const { return dem::stable_step(engine_->guarded()); }
 
@@ -652,15 +653,16 @@ State Simulation::state() const {
   if (e.setup.levels > 0) {
     constexpr std::uint8_t asleep = State::Layout::asleep_level;
     state.layout.grain_level = grains.level;
-    for (const PairContacts::Head& head : e.pairs.head) {
-      state.layout.block_level.push_back(!head.acts && head.asleep ? asleep : head.level);
-      state.layout.block_wake.push_back(head.wake);
+    const auto level_of = [](const Activity& a) { return !a.acts && a.asleep ? asleep : a.level; };
+    for (const Activity& activity : e.pairs.activity) {
+      state.layout.block_level.push_back(level_of(activity));
+      state.layout.block_wake.push_back(activity.wake);
     }
-    for (const WallCandidate& c : e.walls.candidate) {
-      state.layout.wall_grain.push_back(c.particle);
-      state.layout.wall.push_back(c.wall);
-      state.layout.wall_level.push_back(c.size == 0 && c.asleep ? asleep : c.level);
-      state.layout.wall_wake.push_back(c.wake);
+    for (std::size_t q = 0; q < e.walls.candidate.size(); ++q) {
+      state.layout.wall_grain.push_back(e.walls.candidate[q].particle);
+      state.layout.wall.push_back(e.walls.candidate[q].wall);
+      state.layout.wall_level.push_back(level_of(e.walls.activity[q]));
+      state.layout.wall_wake.push_back(e.walls.activity[q].wake);
     }
     state.layout.foresight = e.foresight;
     state.layout.closing_jolt = e.closing_jolt;

@@ -12,6 +12,41 @@
 #include "libdem/simulation/simulation.hpp"
 #include "tests/dem/grains.hpp"
 
+// A double that counts what is done to it: how many operations the law takes.
+namespace counting {
+
+struct Counts {
+  int sums = 0, products = 0, quotients = 0, roots = 0, choices = 0;  // a choice: comparison, selection, extremum, absolute value
+} counts;
+
+struct Number {
+  double value = 0;
+  Number() = default;
+  Number(double v) : value(v) {}
+  explicit operator double() const { return value; }
+};
+struct Truth {
+  bool value = false;
+};
+inline Number operator+(Number a, Number b) { return ++counts.sums, a.value + b.value; }
+inline Number operator-(Number a, Number b) { return ++counts.sums, a.value - b.value; }
+inline Number operator-(Number a) { return ++counts.sums, -a.value; }
+inline Number operator*(Number a, Number b) { return ++counts.products, a.value * b.value; }
+inline Number operator/(Number a, Number b) { return ++counts.quotients, a.value / b.value; }
+inline Truth operator<(Number a, Number b) { return ++counts.choices, Truth{a.value < b.value}; }
+inline Truth operator>(Number a, Number b) { return ++counts.choices, Truth{a.value > b.value}; }
+inline Truth operator>=(Number a, Number b) { return ++counts.choices, Truth{a.value >= b.value}; }
+inline Truth operator&&(Truth a, Truth b) { return {a.value && b.value}; }
+inline Truth operator||(Truth a, Truth b) { return {a.value || b.value}; }
+inline bool all(Truth a) { return a.value; }
+inline Number select(Truth mask, Number a, Number b) { return ++counts.choices, mask.value ? a : b; }
+inline Number square_root(Number a) { return ++counts.roots, std::sqrt(a.value); }
+inline Number absolute(Number a) { return ++counts.choices, std::abs(a.value); }
+inline Number larger(Number a, Number b) { return ++counts.choices, a.value > b.value ? a : b; }
+inline Number smaller(Number a, Number b) { return ++counts.choices, a.value < b.value ? a : b; }
+
+}  // namespace counting
+
 namespace {
 
 using namespace dem;
@@ -54,10 +89,31 @@ Touches make_touches(std::size_t packs) {
   return t;
 }
 
-// The default composition, JKR with everything; all data in the first-level cache.
+constexpr std::tuple_element_t<0, FixedLaws> law{};  // the default composition, JKR with everything
+
+// What a contact with memory, sliding or not, takes of the law; energies, which only a ledger asks for, included.
+counting::Counts operations_of_the_law() {
+  using counting::Number;
+  const Touches t = make_touches(1);
+  PairConstants<Number> c;
+  for (std::size_t m = 0; m < material_constants<double>.size(); ++m)
+    c.*material_constants<Number>[m] = double((t.constants.*material_constants<Pack>[m])[0]);
+  for (std::size_t m = 0; m < constants_per_contact; ++m)
+    c.*contact_constants<Number>[m] = double((t.constants.*contact_constants<Pack>[m])[0]);
+  const auto first = [](const Triple<Pack>& v) { return Triple<Number>{double(v.x[0]), double(v.y[0]), double(v.z[0])}; };
+  const Touch<Pack>& from = t.touch[0];
+  const Touch<Number> touch{double(from.overlap[0]), first(from.normal), first(from.velocity), first(from.spin_i),
+                            first(from.spin_j), double(from.arm_i[0]), double(from.arm_j[0])};
+  Springs<Number> springs{first(t.springs[0].tangential), {0.0, 0.0, 0.0}, double(t.springs[0].contact_radius[0])};
+  const Interval<Number> dt(5e-8, 1 / 5e-8);
+  counting::counts = {};
+  benchmark::DoNotOptimize(evaluate(law, touch, c, springs, dt));
+  return counting::counts;
+}
+
+// All data in the first-level cache.
 void law_alone(benchmark::State& state) {
   Touches t = make_touches(16);
-  constexpr std::tuple_element_t<0, FixedLaws> law{};
   const Interval<Pack> dt(5e-8, 1 / 5e-8);
   for (auto _ : state) {
     for (std::size_t k = 0; k < t.touch.size(); ++k) {
@@ -69,14 +125,42 @@ void law_alone(benchmark::State& state) {
   }
   state.counters["contacts/s"] =
       benchmark::Counter(double(t.touch.size() * pack_width), benchmark::Counter::kIsIterationInvariantRate);
+  const counting::Counts of = operations_of_the_law();
+  state.counters["sums"] = of.sums;
+  state.counters["products"] = of.products;
+  state.counters["quotients"] = of.quotients;
+  state.counters["roots"] = of.roots;
+  state.counters["choices"] = of.choices;
 }
 BENCHMARK(law_alone);
 
-// A shaken cubic packing of side^3 grains in free space, six neighbours each.
+// One kind of operation on eight independent packs: what the processor can do at most.
+template <class Operation>
+void operation(benchmark::State& state, Operation operate) {
+  std::array<Pack, 8> a;
+  for (std::size_t k = 0; k < a.size(); ++k) a[k] = 1.0 + 0.01 * double(k);
+  const Pack b = 1.0000001;
+  for (auto _ : state) {
+    for (int round = 0; round < 64; ++round)
+      for (Pack& x : a) {
+        x = operate(x, b);
+        asm volatile("" : "+v"(x));
+      }
+  }
+  benchmark::DoNotOptimize(a);
+  state.counters["operations/s"] =
+      benchmark::Counter(64.0 * double(a.size()), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK_CAPTURE(operation, sum, [](const Pack& a, const Pack& b) { return Pack(a + b); });
+BENCHMARK_CAPTURE(operation, product, [](const Pack& a, const Pack& b) { return Pack(a * b); });
+BENCHMARK_CAPTURE(operation, quotient, [](const Pack& a, const Pack& b) { return Pack(a / b); });
+BENCHMARK_CAPTURE(operation, root, [](const Pack& a, const Pack&) { return square_root(a); });
+
+// A cubic packing of side^3 grains in free space, each pressed by its six neighbours: with a contact on every lane of the list.
 void whole_step(benchmark::State& state) {
   omp_set_num_threads(int(state.range(1)));
   State start;
-  start.particles = support::packed_cube(int(state.range(0)), 1e-6, 0.02, 1);
+  start.particles = support::packed_cube(int(state.range(0)), 1e-6, 1e-4, 1);
   const double grains = double(start.particles.size());
   Simulation sim(support::glass_setup(), std::move(start));
   sim.advance(20);
@@ -85,7 +169,14 @@ void whole_step(benchmark::State& state) {
   state.counters["grain steps/s"] = benchmark::Counter(grains * steps, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["contacts"] = double(sim.contacts());
 }
-BENCHMARK(whole_step)->ArgNames({"side", "threads"})->Args({17, 1})->Args({33, 1})->Args({33, 2})->Args({52, 1})->UseRealTime();
+BENCHMARK(whole_step)
+    ->ArgNames({"side", "threads"})
+    ->Args({17, 1})
+    ->Args({33, 1})
+    ->Args({33, 2})
+    ->Args({52, 1})
+    ->Args({100, 1})
+    ->UseRealTime();
 
 void order_and_list(benchmark::State& state) {
   omp_set_num_threads(1);

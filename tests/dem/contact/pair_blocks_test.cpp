@@ -125,9 +125,9 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
         if (j >= n) continue;
         ASSERT_EQ(b < pairs.chunk[c].inner_end, j / chunk_rows == c);
         if (b >= pairs.chunk[c].inner_end) {
-          ASSERT_TRUE(crossing.emplace(pairs.head[b].crossing + k, j).second);
+          ASSERT_TRUE(crossing.emplace(pairs.kind[b].crossing + k, j).second);
         }
-        const PairConstants<double>& kind = s.materials.pair[pairs.head[b].material_pair];
+        const PairConstants<double>& kind = s.materials.pair[pairs.kind[b].material_pair];
         EXPECT_EQ(kind.work_of_adhesion, s.materials(s.material[i], s.material[j]).work_of_adhesion);
         const PairConstants<double> expected = pair_constants(kind, {s.rows[i].radius(), s.mass[i], s.inertia[i]},
                                                               {s.rows[j].radius(), s.mass[j], s.inertia[j]});
