@@ -50,6 +50,62 @@ TEST(MetricsTest, HaveTheirDefinitionsOnAHandMadeNetwork) {
   EXPECT_DOUBLE_EQ(value("largest_component_share", s), 0.5);
 }
 
+TEST(MetricsTest, OfLoopsAndBridgesHaveTheirDefinitions) {
+  const Snapshot s = triangle_pair_and_rattler();
+  EXPECT_DOUBLE_EQ(value("triangle_count", s), 1.0);
+  EXPECT_DOUBLE_EQ(value("transitivity", s), 1.0);
+  EXPECT_DOUBLE_EQ(value("mean_clustering", s), 1.0);  // grains 4, 5 and 6 have none
+  EXPECT_DOUBLE_EQ(value("independent_cycles", s), 1.0);
+  EXPECT_DOUBLE_EQ(value("largest_core_number", s), 2.0);
+  EXPECT_DOUBLE_EQ(value("rattler_share", s), 0.5);
+  EXPECT_DOUBLE_EQ(value("bridge_strength", s), 0.0);
+  EXPECT_TRUE(std::isnan(value("sliding_share", s)));
+
+  //  blade 9 -- 1 -7- 2 -3- 3 -- 8 vessel        and, weaker at its end,  blade 5 -- 4 -6- 3
+  const Snapshot bridge = Network()
+                              .press(1, blade_wall, 9)
+                              .touch(1, 2, 7)
+                              .touch(2, 3, 3)
+                              .press(4, blade_wall, 5)
+                              .touch(3, 4, 6)
+                              .press(3, vessel_wall, 8)
+                              .snapshot();
+  EXPECT_DOUBLE_EQ(value("bridge_strength", bridge), 5.0);
+  EXPECT_DOUBLE_EQ(value("bridge_flow", bridge), 8.0);
+  EXPECT_DOUBLE_EQ(value("contact_disjoint_load_paths", bridge), 1.0);
+  EXPECT_DOUBLE_EQ(value("particle_disjoint_load_paths", bridge), 1.0);
+}
+
+// Directions along one axis: Phi = diag(0, 0, 1), D = diag(-2.5, -2.5, 5). In a plane at right angles: Phi = diag(1/2, 1/2, 0),
+// D = diag(1.25, 1.25, -2.5). Along three axes equally often: 0.
+TEST(MetricsTest, OfTheFabricHaveTheirDefinitions) {
+  const auto place = [](float x, float y, float z) { return Vec3f(x * 1e-3f, y * 1e-3f, z * 1e-3f); };
+  const Snapshot line = Network().grain(1, place(0, 0, 0)).grain(2, place(0, 0, 1)).touch(1, 2, 1).snapshot();
+  EXPECT_NEAR(value("fabric_anisotropy", line), 7.5, 1e-6);
+  const Snapshot corner = Network()
+                              .grain(1, place(0, 0, 0))
+                              .grain(2, place(1, 0, 0))
+                              .grain(3, place(0, 1, 0))
+                              .touch(1, 2, 1)
+                              .touch(1, 3, 3)
+                              .snapshot();
+  EXPECT_NEAR(value("fabric_anisotropy", corner), 3.75, 1e-6);
+  // diag(1/4, 3/4, 0): D = diag(-0.625, 3.125, -2.5).
+  EXPECT_NEAR(value("force_fabric_anisotropy", corner), std::sqrt(1.5 * (0.625 * 0.625 + 3.125 * 3.125 + 2.5 * 2.5)), 1e-6);
+  EXPECT_NEAR(value("strong_fabric_anisotropy", corner), 7.5, 1e-6);
+  EXPECT_NEAR(value("weak_fabric_anisotropy", corner), 7.5, 1e-6);
+  const Snapshot cross = Network()
+                             .grain(1, place(0, 0, 0))
+                             .grain(2, place(1, 0, 0))
+                             .grain(3, place(0, 1, 0))
+                             .grain(4, place(0, 0, -1))
+                             .touch(1, 2, 1)
+                             .touch(1, 3, -3)
+                             .touch(1, 4, 0)
+                             .snapshot();
+  EXPECT_NEAR(value("fabric_anisotropy", cross), 0, 1e-6);
+}
+
 TEST(MetricsTest, AWallJoinsNothing) {
   //   1 |blade| 2        a wall as a vertex would make one component of it
   const Snapshot s = Network().press(1, blade_wall, 5).press(2, blade_wall, 5).snapshot();
@@ -83,6 +139,23 @@ TEST_P(EveryMetricTest, DoesNotChangeWhenTheParticlesGetOtherIdsAndAnotherOrder)
     const Snapshot other = hand_made::relabelled(snapshot, hand_made::shuffled_ids(seed, 40));
     const ContactGraph graph(snapshot, hand_made_run().walls), other_graph(other, hand_made_run().walls);
     expect_same(GetParam().value(graph), GetParam().value(other_graph));
+  }
+}
+
+// Positions are floats: turning and shifting them rounds each by 1e-7 of its size, directions of contacts by 1e-5.
+TEST_P(EveryMetricTest, DoesNotChangeWhenTheSceneIsTurnedAndShifted) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    const Snapshot snapshot = hand_made::random_network(seed, 40, 100);
+    Snapshot turned = snapshot;
+    const Eigen::Quaternionf turn = Eigen::Quaternionf(0.3f, 0.5f * float(seed), -0.7f, 0.2f).normalized();
+    for (Vec3f& x : turned.particles.position) x = turn * x + Vec3f(0.003f, -0.001f, 0.002f);
+    const ContactGraph graph(snapshot, hand_made_run().walls), turned_graph(turned, hand_made_run().walls);
+    const double a = GetParam().value(graph), b = GetParam().value(turned_graph);
+    if (std::isnan(a)) {
+      EXPECT_TRUE(std::isnan(b));
+    } else {
+      EXPECT_NEAR(a, b, 1e-4 * std::max(1.0, std::abs(a)));
+    }
   }
 }
 

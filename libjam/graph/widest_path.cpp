@@ -1,0 +1,97 @@
+#include "libjam/graph/widest_path.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "libjam/graph/contact_force.hpp"
+
+namespace jam {
+namespace {
+
+constexpr ContactGraph::Vertex nobody = std::numeric_limits<ContactGraph::Vertex>::max();
+
+// N, on the particle by walls of a role: its strongest contact.
+double strongest(const ContactGraph& graph, ContactGraph::Vertex v, WallRole role) {
+  double most = 0;
+  for (const std::uint32_t c : graph.wall_contacts(v, role)) most = std::max(most, repulsive_force(graph.snapshot().pw, c));
+  return most;
+}
+
+// Sets of particles, and which of the two ends each reaches.
+class Sets {
+ public:
+  explicit Sets(std::size_t n) : parent_(n), ends_(n, 0) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t of(std::uint32_t v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  // Do these now reach both ends?
+  bool reach(std::uint32_t v, std::uint8_t end) { return (ends_[of(v)] |= end) == both; }
+  bool join(std::uint32_t a, std::uint32_t b) {
+    a = of(a), b = of(b);
+    if (a == b) return false;
+    parent_[std::max(a, b)] = std::min(a, b);
+    return (ends_[std::min(a, b)] |= ends_[std::max(a, b)]) == both;
+  }
+  static constexpr std::uint8_t blade = 1, vessel = 2, both = 3;
+
+ private:
+  std::vector<std::uint32_t> parent_;
+  std::vector<std::uint8_t> ends_;
+};
+
+struct Link {
+  double force;
+  std::uint32_t a, b;  // b: a particle, or beyond all of them an end
+};
+
+// N, at which blade and vessel come together.
+double strength(const ContactGraph& graph) {
+  const ParticleContacts& pp = graph.snapshot().pp;
+  const std::uint32_t n = std::uint32_t(graph.vertex_count());
+  std::vector<Link> links;
+  for (std::size_t c = 0; c < pp.size(); ++c)
+    if (const double force = repulsive_force(pp, c); force > 0) links.push_back({force, pp.row[c][0], pp.row[c][1]});
+  for (ContactGraph::Vertex v = 0; v < n; ++v) {
+    if (const double force = strongest(graph, v, WallRole::blade); force > 0) links.push_back({force, v, n + Sets::blade});
+    if (const double force = strongest(graph, v, WallRole::vessel); force > 0) links.push_back({force, v, n + Sets::vessel});
+  }
+  std::sort(links.begin(), links.end(), [](const Link& x, const Link& y) { return x.force > y.force; });
+  Sets sets(n);
+  for (const Link& link : links)
+    if (link.b < n ? sets.join(link.a, link.b) : sets.reach(link.a, std::uint8_t(link.b - n))) return link.force;
+  return 0;
+}
+
+}  // namespace
+
+WidestPath widest_path(const ContactGraph& graph) {
+  WidestPath path;
+  path.strength = strength(graph);
+  if (path.strength == 0) return path;
+  // Breadth first over the contacts that are as strong, from the blade; partners come in ascending order.
+  std::vector<ContactGraph::Vertex> before(graph.vertex_count(), nobody), front;
+  for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v)
+    if (strongest(graph, v, WallRole::blade) >= path.strength) {
+      before[v] = v;
+      front.push_back(v);
+    }
+  for (std::size_t k = 0; k < front.size(); ++k) {
+    ContactGraph::Vertex v = front[k];
+    if (strongest(graph, v, WallRole::vessel) >= path.strength) {
+      for (; before[v] != v; v = before[v]) path.particles.push_back(v);
+      path.particles.push_back(v);
+      std::reverse(path.particles.begin(), path.particles.end());
+      break;
+    }
+    for (const ContactGraph::Neighbor& neighbor : graph.neighbors(v)) {
+      if (before[neighbor.vertex] != nobody || repulsive_force(graph.snapshot().pp, neighbor.contact) < path.strength) continue;
+      before[neighbor.vertex] = v;
+      front.push_back(neighbor.vertex);
+    }
+  }
+  return path;
+}
+
+}  // namespace jam

@@ -1,0 +1,223 @@
+// Cores, triangles, rattlers, widest paths and flows against their definitions, tried out one by one on small random networks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <set>
+
+#include "libjam/graph/contact_force.hpp"
+#include "libjam/graph/core_numbers.hpp"
+#include "libjam/graph/max_flow.hpp"
+#include "libjam/graph/rattlers.hpp"
+#include "libjam/graph/triangles.hpp"
+#include "libjam/graph/widest_path.hpp"
+#include "tests/jam/graph/hand_made_network.hpp"
+
+namespace jam {
+namespace {
+
+using hand_made::blade_wall;
+using hand_made::hand_made_run;
+using hand_made::Network;
+using hand_made::random_network;
+using hand_made::vessel_wall;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// f(graph) on networks of so many grains, from sparse to dense.
+template <class F>
+void for_random_networks(unsigned particles, F f) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const Snapshot snapshot = random_network(seed, particles, seed * particles / 12);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    f(ContactGraph(snapshot, hand_made_run().walls));
+  }
+}
+
+// Takes away who has fewer than `least` holds in those left, until nothing changes.
+std::set<ContactGraph::Vertex> left_over(const ContactGraph& graph, std::size_t least, bool walls_hold) {
+  std::set<ContactGraph::Vertex> left;
+  for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v) left.insert(v);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const ContactGraph::Vertex v : std::set(left)) {
+      std::size_t holds = walls_hold ? graph.wall_contacts(v).size() : 0;
+      for (const ContactGraph::Neighbor& n : graph.neighbors(v)) holds += left.count(n.vertex);
+      if (holds < least) changed = left.erase(v) > 0;
+    }
+  }
+  return left;
+}
+
+TEST(CoreNumbers, AreTheLargestCoreThatHoldsTheParticle) {
+  for_random_networks(40, [](const ContactGraph& graph) {
+    const std::vector<std::uint32_t> core = core_numbers(graph);
+    for (std::uint32_t k = 0; k < 8; ++k) {
+      const std::set<ContactGraph::Vertex> members = left_over(graph, k, false);
+      for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v) EXPECT_EQ(core[v] >= k, members.count(v) > 0) << v;
+    }
+  });
+}
+
+TEST(Rattlers, FallUntilAllThatRemainAreHeld) {
+  //  floor -- 1 -- 2 -- 3      3 hangs on 2 alone; without it 2 hangs on 1 alone, and 1 rests on the floor alone
+  const Snapshot s = Network().press(1, hand_made::floor_wall, 1).touch(1, 2, 1).touch(2, 3, 1).snapshot();
+  EXPECT_THAT(rattlers(ContactGraph(s, hand_made_run().walls)), ElementsAre(1, 1, 1));
+  for_random_networks(40, [](const ContactGraph& graph) {
+    for (std::uint32_t least : {2u, 4u}) {
+      const std::vector<std::uint8_t> loose = rattlers(graph, least);
+      const std::set<ContactGraph::Vertex> held = left_over(graph, least, true);
+      for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v) EXPECT_EQ(loose[v] == 0, held.count(v) > 0) << v;
+    }
+  });
+}
+
+TEST(Triangles, AreAllTriplesThatTouch) {
+  for_random_networks(25, [](const ContactGraph& graph) {
+    const std::size_t n = graph.vertex_count();
+    std::vector<std::vector<bool>> touch(n, std::vector<bool>(n, false));
+    for (const auto& [a, b] : graph.snapshot().pp.row) touch[a][b] = touch[b][a] = true;
+    std::vector<std::uint32_t> expected(n, 0);
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t b = a + 1; b < n; ++b)
+        for (std::size_t c = b + 1; c < n; ++c)
+          if (touch[a][b] && touch[b][c] && touch[a][c]) ++expected[a], ++expected[b], ++expected[c];
+    EXPECT_EQ(triangles(graph), expected);
+  });
+}
+
+// Capacity that leads from a set of particles and the blade to the others and the vessel.
+double cut(const ContactGraph& graph, unsigned side, const std::vector<double>& pp, const std::vector<double>& pw) {
+  double sum = 0;
+  const Snapshot& s = graph.snapshot();
+  for (std::size_t c = 0; c < pp.size(); ++c)
+    if ((side >> s.pp.row[c][0] & 1) != (side >> s.pp.row[c][1] & 1)) sum += pp[c];
+  for (std::size_t c = 0; c < pw.size(); ++c) {
+    const bool with_blade = side >> s.pw.row[c] & 1;
+    if (s.pw.wall[c] == (with_blade ? vessel_wall : blade_wall)) sum += pw[c];
+  }
+  return sum;
+}
+
+std::vector<double> forces(const ContactGraph& graph, bool walls) {
+  std::vector<double> force;
+  for (std::size_t c = 0; c < (walls ? graph.wall_contact_count() : graph.edge_count()); ++c)
+    force.push_back(walls ? repulsive_force(graph.snapshot().pw, c) : repulsive_force(graph.snapshot().pp, c));
+  return force;
+}
+
+TEST(MaxFlow, IsTheSmallestOfAllCutsAndNamesOne) {
+  for_random_networks(10, [](const ContactGraph& graph) {
+    const std::vector<double> pp = forces(graph, false), pw = forces(graph, true);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (unsigned side = 0; side < 1u << 10; ++side) smallest = std::min(smallest, cut(graph, side, pp, pw));
+    const MaxFlow flow = max_force_flow(graph);
+    EXPECT_EQ(flow.value, smallest);  // integer newtons
+    unsigned side = 0;
+    for (unsigned v = 0; v < 10; ++v) side |= unsigned(flow.blade_side[v]) << v;
+    EXPECT_EQ(cut(graph, side, pp, pw), smallest);
+    // The smallest side of all smallest cuts: theirs hold it.
+    for (unsigned other = 0; other < 1u << 10; ++other)
+      EXPECT_TRUE(cut(graph, other, pp, pw) > smallest || (other & side) == side);
+    double named = 0;
+    for (const std::uint32_t c : flow.cut_pp) named += pp[c];
+    for (const std::uint32_t c : flow.cut_pw) named += pw[c];
+    EXPECT_EQ(named, smallest);
+  });
+}
+
+TEST(DisjointLoadPaths, AreAsManyAsContactsOrParticlesPartBladeAndVessel) {
+  for_random_networks(10, [](const ContactGraph& graph) {
+    std::vector<double> pp = forces(graph, false), pw = forces(graph, true);
+    for (double& force : pp) force = force > 0;
+    for (double& force : pw) force = force > 0;
+    double contacts = std::numeric_limits<double>::infinity();
+    for (unsigned side = 0; side < 1u << 10; ++side) contacts = std::min(contacts, cut(graph, side, pp, pw));
+    EXPECT_EQ(double(contact_disjoint_load_paths(graph)), contacts);
+
+    // The fewest particles without which nothing that the blade presses leads to the vessel.
+    const auto parts = [&](unsigned taken) {
+      unsigned reached = 0, before = ~0u;
+      for (std::size_t c = 0; c < pw.size(); ++c)
+        if (pw[c] > 0 && graph.snapshot().pw.wall[c] == blade_wall) reached |= 1u << graph.snapshot().pw.row[c];
+      for (reached &= ~taken; reached != before;) {
+        before = reached;
+        for (std::size_t c = 0; c < pp.size(); ++c) {
+          const auto [a, b] = graph.snapshot().pp.row[c];
+          if (pp[c] > 0 && ((reached >> a & 1) || (reached >> b & 1))) reached |= (1u << a | 1u << b) & ~taken;
+        }
+      }
+      for (std::size_t c = 0; c < pw.size(); ++c)
+        if (pw[c] > 0 && graph.snapshot().pw.wall[c] == vessel_wall && (reached >> graph.snapshot().pw.row[c] & 1)) return false;
+      return true;
+    };
+    int fewest = 10;
+    for (unsigned taken = 0; taken < 1u << 10; ++taken)
+      if (parts(taken)) fewest = std::min(fewest, std::popcount(taken));
+    EXPECT_EQ(int(particle_disjoint_load_paths(graph)), fewest);
+  });
+}
+
+// Does a path of contacts of at least this force lead from the blade to the vessel?
+bool bridged(const ContactGraph& graph, double force) {
+  const std::vector<double> pp = forces(graph, false), pw = forces(graph, true);
+  std::set<ContactGraph::Vertex> reached;
+  const auto ends = [&](ContactGraph::Vertex v, std::uint8_t wall) {
+    for (std::size_t c = 0; c < pw.size(); ++c)
+      if (graph.snapshot().pw.row[c] == v && graph.snapshot().pw.wall[c] == wall && pw[c] >= force) return true;
+    return false;
+  };
+  for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v)
+    if (ends(v, blade_wall)) reached.insert(v);
+  for (std::size_t before = graph.vertex_count() + 1; before != reached.size();) {
+    before = reached.size();
+    for (std::size_t c = 0; c < pp.size(); ++c) {
+      const auto [a, b] = graph.snapshot().pp.row[c];
+      if (pp[c] >= force && (reached.count(a) || reached.count(b))) reached.insert({a, b});
+    }
+  }
+  for (const ContactGraph::Vertex v : reached)
+    if (ends(v, vessel_wall)) return true;
+  return false;
+}
+
+TEST(WidestPath, IsBridgedAtItsStrengthAndNotAbove) {
+  const Snapshot apart = Network().touch(1, 2, 3).snapshot();
+  EXPECT_THAT(widest_path(ContactGraph(apart, hand_made_run().walls)).particles, IsEmpty());
+  // One grain between blade and vessel.
+  const Snapshot pinched = Network().press(7, blade_wall, 30).press(7, vessel_wall, 20).snapshot();
+  const WidestPath one = widest_path(ContactGraph(pinched, hand_made_run().walls));
+  EXPECT_EQ(one.strength, 20);
+  EXPECT_THAT(one.particles, ElementsAre(0));
+  int bridges = 0;
+  for_random_networks(20, [&](const ContactGraph& graph) {
+    const WidestPath path = widest_path(graph);
+    EXPECT_FALSE(bridged(graph, path.strength + 0.5));  // integer newtons
+    if (path.strength == 0) {
+      EXPECT_FALSE(bridged(graph, 0.5));
+      return;
+    }
+    ++bridges;
+    EXPECT_TRUE(bridged(graph, path.strength));
+    // The path itself: its weakest contact is the strength.
+    double weakest = std::numeric_limits<double>::infinity();
+    const auto strongest = [&](ContactGraph::Vertex v, WallRole role) {
+      double most = 0;
+      for (const std::uint32_t c : graph.wall_contacts(v, role)) most = std::max(most, repulsive_force(graph.snapshot().pw, c));
+      return most;
+    };
+    weakest = std::min(strongest(path.particles.front(), WallRole::blade), strongest(path.particles.back(), WallRole::vessel));
+    for (std::size_t k = 1; k < path.particles.size(); ++k) {
+      double link = 0;
+      for (const ContactGraph::Neighbor& n : graph.neighbors(path.particles[k - 1]))
+        if (n.vertex == path.particles[k]) link = repulsive_force(graph.snapshot().pp, n.contact);
+      weakest = std::min(weakest, link);
+    }
+    EXPECT_EQ(weakest, path.strength);
+  });
+  EXPECT_GT(bridges, 20);
+}
+
+}  // namespace
+}  // namespace jam
