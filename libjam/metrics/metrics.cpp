@@ -9,6 +9,7 @@
 #include "libjam/metrics/coordination.hpp"
 #include "libjam/metrics/coordination_with_walls.hpp"
 #include "libjam/metrics/fabric.hpp"
+#include "libjam/metrics/force_chain_metrics.hpp"
 #include "libjam/metrics/independent_cycles.hpp"
 #include "libjam/metrics/largest_component_share.hpp"
 #include "libjam/metrics/largest_core_number.hpp"
@@ -46,6 +47,10 @@ constexpr auto table = std::to_array<Metric>({
     {"force_fabric_anisotropy", "1", "the same, contacts weighted by their repulsive force", force_fabric_anisotropy},
     {"strong_fabric_anisotropy", "1", "the same of the contacts above the mean repulsive force", strong_fabric_anisotropy},
     {"weak_fabric_anisotropy", "1", "the same of the other repulsive contacts", weak_fabric_anisotropy},
+    {"force_chain_count", "1", "linear force chains (Peters et al.)", force_chain_count},
+    {"force_chain_share", "1", "share of particles in force chains", force_chain_share},
+    {"mean_force_chain_length", "1", "particles of a force chain in the mean", mean_force_chain_length},
+    {"bridging_force_chains", "1", "force chains from blade to vessel", bridging_force_chains},
     {"bridge_strength", "N", "weakest contact of the strongest path from blade to vessel", bridge_strength},
     {"bridge_flow", "N", "maximum flow of repulsive force from blade to vessel", bridge_flow},
     {"contact_disjoint_load_paths", "1", "paths from blade to vessel that share no contact",
