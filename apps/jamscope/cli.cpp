@@ -165,11 +165,16 @@ Command add_inspect(CLI::App& app, Options& o) {
 }
 
 Command add_metrics(CLI::App& app, Options& o) {
-  CLI::App& c = *app.add_subcommand("metrics", "network metrics of every frame, as a table on standard output");
+  CLI::App& c = *app.add_subcommand("metrics", "network metrics of every frame, particle or contact, as a table on standard output");
   MetricsOptions& m = o.metrics;
   add_input(c, m.input);
   auto* const frame = c.add_option("--frame", m.frame, "this frame only, counted from 0")->type_name("K");
   c.add_flag("--all", o.all_frames, "every frame (the default)")->excludes(frame);
+  const std::map<std::string, MetricsOf> parts{
+      {"frames", MetricsOf::frames}, {"particles", MetricsOf::particles}, {"contacts", MetricsOf::contacts}};
+  c.add_option("--of", m.of, "a row for each of these (default: frames)")
+      ->transform(CLI::CheckedTransformer(parts).description(""))
+      ->type_name("frames|particles|contacts");
   c.add_option("--metric", m.names, "names from the list below, separated by commas; default: all")
       ->delimiter(',')
       ->allow_extra_args(false)
@@ -178,7 +183,9 @@ Command add_metrics(CLI::App& app, Options& o) {
   c.add_option("--format", m.format, "csv or json")
       ->transform(CLI::CheckedTransformer(formats).description(""))
       ->type_name("csv|json");
-  c.footer("Metrics:\n" + metric_list() + "\nExample:\n  jamscope metrics run/run.h5 --metric coordination > z.csv");
+  c.footer(metric_list() +
+           "\nExamples:\n  jamscope metrics run/run.h5 --metric coordination,bridge_strength > bridge.csv\n"
+           "  jamscope metrics run/run.h5 --of particles --frame 3 > grains.csv");
   return [&o] { return network_metrics(o.metrics); };
 }
 

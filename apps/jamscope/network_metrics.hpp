@@ -1,4 +1,4 @@
-// jamscope metrics: network metrics per frame, as a table.
+// jamscope metrics: network metrics of frames, particles or contacts, as a table.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,19 +9,21 @@
 namespace jamscope {
 
 enum class TableFormat { csv, json };
+enum class MetricsOf { frames, particles, contacts };
 
 struct MetricsOptions {
   InputOptions input;
   std::optional<std::size_t> frame;  // this one only
-  std::vector<std::string> names;    // of libjam/metrics/metrics.hpp; empty: all
+  MetricsOf of = MetricsOf::frames;
+  std::vector<std::string> names;    // of that table in libjam/metrics/metrics.hpp; empty: all
   TableFormat format = TableFormat::csv;
 };
 
-// Prints to standard output: one row per frame, columns frame, time and the metrics with their units.
+// Prints to standard output: one row per frame, particle or contact, columns frame, time, ids and the metrics with their units.
 // Throws UsageError for an unknown metric or frame, and like the libraries.
 int network_metrics(const MetricsOptions& options);
 
-// One line per metric: name, unit, what it is. For the help text.
+// One line per metric of each table: name, unit, what it is. For the help text.
 std::string metric_list();
 
 }  // namespace jamscope

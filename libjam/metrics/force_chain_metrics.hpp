@@ -13,26 +13,19 @@
 
 namespace jam {
 
-inline std::vector<ForceChain> usual_force_chains(const ContactGraph& graph) {
-  return force_chains(graph, particle_loads(particle_stress(graph, sphere_volumes(graph.snapshot()))));
-}
 inline double particles_in(const std::vector<ForceChain>& chains) {
   double sum = 0;
   for (const ForceChain& chain : chains) sum += double(chain.particles.size());
   return sum;
 }
-
-inline double force_chain_count(const ContactGraph& graph) { return double(usual_force_chains(graph).size()); }
-inline double force_chain_share(const ContactGraph& graph) {
+inline double force_chain_share(const ContactGraph& graph, const std::vector<ForceChain>& chains) {
   if (graph.vertex_count() == 0) return std::numeric_limits<double>::quiet_NaN();
-  return particles_in(usual_force_chains(graph)) / double(graph.vertex_count());
+  return particles_in(chains) / double(graph.vertex_count());
 }
-inline double mean_force_chain_length(const ContactGraph& graph) {
-  const std::vector<ForceChain> chains = usual_force_chains(graph);
+inline double mean_force_chain_length(const std::vector<ForceChain>& chains) {
   return chains.empty() ? std::numeric_limits<double>::quiet_NaN() : particles_in(chains) / double(chains.size());
 }
-inline double bridging_force_chains(const ContactGraph& graph) {
-  const std::vector<ForceChain> chains = usual_force_chains(graph);
+inline double bridging_force_chains(const std::vector<ForceChain>& chains) {
   return double(std::count_if(chains.begin(), chains.end(), [](const ForceChain& c) { return c.at_blade && c.at_vessel; }));
 }
 

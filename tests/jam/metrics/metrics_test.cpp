@@ -1,9 +1,12 @@
 #include "libjam/metrics/metrics.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 
@@ -17,11 +20,16 @@ using hand_made::hand_made_run;
 using hand_made::Network;
 using hand_made::vessel_wall;
 
+template <class Row>
+auto value(const Row& metric, const Snapshot& snapshot) {
+  const ContactGraph graph(snapshot, hand_made_run().walls);
+  FrameNetwork network(graph);
+  return metric.value(network);
+}
 double value(const char* name, const Snapshot& snapshot) {
   const Metric* metric = find_metric(name);
   if (metric == nullptr) return std::numeric_limits<double>::signaling_NaN();
-  const ContactGraph graph(snapshot, hand_made_run().walls);
-  return metric->value(graph);
+  return value(*metric, snapshot);
 }
 
 //   1 -- 2
@@ -137,8 +145,7 @@ TEST_P(EveryMetricTest, DoesNotChangeWhenTheParticlesGetOtherIdsAndAnotherOrder)
   for (unsigned seed = 0; seed < 10; ++seed) {
     const Snapshot snapshot = hand_made::random_network(seed, 40, 15 * seed);
     const Snapshot other = hand_made::relabelled(snapshot, hand_made::shuffled_ids(seed, 40));
-    const ContactGraph graph(snapshot, hand_made_run().walls), other_graph(other, hand_made_run().walls);
-    expect_same(GetParam().value(graph), GetParam().value(other_graph));
+    expect_same(value(GetParam(), snapshot), value(GetParam(), other));
   }
 }
 
@@ -149,8 +156,7 @@ TEST_P(EveryMetricTest, DoesNotChangeWhenTheSceneIsTurnedAndShifted) {
     Snapshot turned = snapshot;
     const Eigen::Quaternionf turn = Eigen::Quaternionf(0.3f, 0.5f * float(seed), -0.7f, 0.2f).normalized();
     for (Vec3f& x : turned.particles.position) x = turn * x + Vec3f(0.003f, -0.001f, 0.002f);
-    const ContactGraph graph(snapshot, hand_made_run().walls), turned_graph(turned, hand_made_run().walls);
-    const double a = GetParam().value(graph), b = GetParam().value(turned_graph);
+    const double a = value(GetParam(), snapshot), b = value(GetParam(), turned);
     if (std::isnan(a)) {
       EXPECT_TRUE(std::isnan(b));
     } else {
@@ -161,8 +167,7 @@ TEST_P(EveryMetricTest, DoesNotChangeWhenTheSceneIsTurnedAndShifted) {
 
 TEST_P(EveryMetricTest, GivesNoInfinityForFramesWithoutParticlesOrContacts) {
   for (const Snapshot& snapshot : {Snapshot{}, Network().grain(1).snapshot(), Network().grain(1).grain(2).snapshot()}) {
-    const ContactGraph graph(snapshot, hand_made_run().walls);
-    EXPECT_FALSE(std::isinf(GetParam().value(graph)));
+    EXPECT_FALSE(std::isinf(value(GetParam(), snapshot)));
   }
 }
 
@@ -175,6 +180,64 @@ TEST_P(EveryMetricTest, HasAUnitADocAndANameInSnakeCase) {
 
 INSTANTIATE_TEST_SUITE_P(Table, EveryMetricTest, ::testing::ValuesIn(metrics().begin(), metrics().end()),
                          [](const auto& test) { return std::string(test.param.name); });
+
+// The same of metrics of particles and of contacts: they follow their particle, whatever its row.
+TEST(EveryParticleMetric, FollowsItsParticleThroughOtherIdsOrdersAndMotions) {
+  for (const ParticleMetric& metric : particle_metrics()) {
+    SCOPED_TRACE(metric.name);
+    EXPECT_FALSE(metric.unit.empty() || metric.doc.empty());
+    EXPECT_TRUE(value(metric, Snapshot{}).empty());
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      const Snapshot s = hand_made::random_network(seed, 40, 15 * seed);
+      const std::vector<ParticleId> ids = hand_made::shuffled_ids(seed, 40);
+      const Snapshot other = hand_made::relabelled(s, ids);
+      const std::vector<double> values = value(metric, s), others = value(metric, other);
+      ASSERT_EQ(values.size(), s.particles.size());
+      for (std::size_t r = 0; r < ids.size(); ++r) {
+        const auto there = std::find(other.particles.id.begin(), other.particles.id.end(), ids[r]) - other.particles.id.begin();
+        // Which of two equally strong bridges is told follows the rows.
+        if (metric.name != "on_strongest_bridge") expect_same(values[r], others[std::size_t(there)]);
+        EXPECT_FALSE(std::isinf(values[r]));
+      }
+    }
+  }
+}
+
+TEST(EveryContactMetric, FollowsItsContactThroughOtherIdsAndOrders) {
+  for (const ContactMetric& metric : contact_metrics()) {
+    SCOPED_TRACE(metric.name);
+    EXPECT_FALSE(metric.unit.empty() || metric.doc.empty());
+    EXPECT_TRUE(value(metric, Snapshot{}).empty());
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      const Snapshot s = hand_made::random_network(seed, 40, 15 * seed);
+      const std::vector<ParticleId> ids = hand_made::shuffled_ids(seed, 40);
+      const Snapshot other = hand_made::relabelled(s, ids);
+      std::map<std::set<ParticleId>, double> found;
+      const std::vector<double> values = value(metric, s), others = value(metric, other);
+      ASSERT_EQ(values.size(), s.pp.size());
+      for (std::size_t c = 0; c < other.pp.size(); ++c)
+        found[{other.particles.id[other.pp.row[c][0]], other.particles.id[other.pp.row[c][1]]}] = others[c];
+      for (std::size_t c = 0; c < s.pp.size(); ++c) expect_same(values[c], found.at({ids[s.pp.row[c][0]], ids[s.pp.row[c][1]]}));
+    }
+  }
+}
+
+TEST(ParticleMetrics, HaveTheirDefinitionsOnAHandMadeNetwork) {
+  const auto of = [](const char* name) {
+    for (const ParticleMetric& metric : particle_metrics())
+      if (metric.name == name) return value(metric, triangle_pair_and_rattler());
+    return std::vector<double>{};
+  };
+  using ::testing::ElementsAre;
+  EXPECT_THAT(of("contacts"), ElementsAre(2, 2, 2, 1, 1, 0));
+  EXPECT_THAT(of("wall_contacts"), ElementsAre(0, 0, 1, 0, 0, 0));
+  EXPECT_THAT(of("component_size"), ElementsAre(3, 3, 3, 2, 2, 1));
+  EXPECT_THAT(of("rattler"), ElementsAre(0, 0, 0, 1, 1, 1));
+  EXPECT_THAT(of("core_number"), ElementsAre(2, 2, 2, 1, 1, 0));
+  EXPECT_THAT(of("triangles"), ElementsAre(1, 1, 1, 0, 0, 0));
+  EXPECT_TRUE(std::isnan(of("clustering_coefficient")[3]));
+  EXPECT_EQ(of("clustering_coefficient")[0], 1);
+}
 
 }  // namespace
 }  // namespace jam
