@@ -26,6 +26,8 @@ struct Column {
   Value Row::*member;
   const char *unit, *doc;
 };
+template <class Row, class Value>  // Clang 14 deduces none for aggregates
+Column(const char*, Value Row::*, const char*, const char*) -> Column<Row, Value>;
 using Pair = dem::State::Pair;
 using WallPair = dem::State::WallPair;
 using Last = dem::LastForces;

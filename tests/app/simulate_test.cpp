@@ -244,7 +244,7 @@ TEST_F(SimulateProgram, AnInterruptLeavesACheckpointToGoOnFrom) {
     execl("/bin/sh", "sh", "-c", ("exec " JAMSCOPE_PROGRAM " " + command("out", "--set run.duration='30 ms'")).c_str(), nullptr);
     _exit(127);
   }
-  for (int wait = 0; wait < 30000 && !std::filesystem::exists(folder_ / "out/run.restart.h5"); ++wait)
+  for (int wait = 0; wait < 300000 && !std::filesystem::exists(folder_ / "out/run.restart.h5"); ++wait)  // its bed settles first
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   kill(child, SIGINT);
