@@ -80,6 +80,8 @@ struct Array {
   std::vector<Value> Owner::*member;
   const char *unit, *doc;
 };
+template <class Owner, class Value>
+Array(const char*, std::vector<Value> Owner::*, const char*, const char*) -> Array<Owner, Value>;
 using Layout = dem::State::Layout;
 constexpr std::tuple particle_arrays{
     Array{"id", &dem::Particles::id, "1", "persistent id"},
