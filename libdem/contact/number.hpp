@@ -5,6 +5,10 @@
 #include <cmath>
 #include <experimental/simd>
 
+#if defined(__clang__) && defined(__AVX512F__) && defined(_GLIBCXX_EXPERIMENTAL_SIMD)
+#error "libstdc++'s std::simd blends AVX-512 packs wrongly under Clang (_S_blend_avx512): add -mno-avx512f"
+#endif
+
 namespace dem {
 
 using Pack = std::experimental::native_simd<double>;
