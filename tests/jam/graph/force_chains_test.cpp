@@ -158,7 +158,7 @@ TEST(ForceChains, BranchOnlyWhereTheyMay) {
 // the same chains.
 TEST(ForceChains, KeepTheirRulesWhateverTheOrder) {
   std::size_t seen = 0;
-  for (unsigned seed = 0; seed < 120; ++seed) {
+  for (unsigned seed = 0; seed < 400; ++seed) {
     const Snapshot s = random_network(seed, 60, 150);
     const ContactGraph graph(s, hand_made_run().walls);
     const std::vector<Load> load = loads(graph);
@@ -198,7 +198,7 @@ TEST(ForceChains, KeepTheirRulesWhateverTheOrder) {
     }
     EXPECT_EQ(names, other_names);
   }
-  EXPECT_GT(seen, 20u);
+  EXPECT_GT(seen, 40u);  // random networks rarely line up: about one chain in six of them
 }
 
 }  // namespace

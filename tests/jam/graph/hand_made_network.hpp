@@ -94,15 +94,17 @@ inline Snapshot random_network(unsigned seed, unsigned particles, unsigned touch
   Network network;
   for (unsigned i = 0; i < particles; ++i) {
     const auto coordinate = [&] { return static_cast<float>(below(24001)) * 1e-6f - 0.012f; };
-    network.grain(3 * i, Vec3f(coordinate(), coordinate(), coordinate() / 4),
-                  0.4e-3f + 1e-6f * static_cast<float>(below(200)));
+    // Drawn one by one, because compilers evaluate the arguments of a call in different orders.
+    const float x = coordinate(), y = coordinate(), z = coordinate() / 4;
+    network.grain(3 * i, Vec3f(x, y, z), 0.4e-3f + 1e-6f * static_cast<float>(below(200)));
   }
   for (unsigned k = 0; k < touches && particles > 1; ++k) {
     const unsigned a = below(particles), b = below(particles);
     if (a != b) network.touch(3 * a, 3 * b, static_cast<float>(below(50)) - 10.0f);
   }
   for (unsigned k = 0; k < particles / 3; ++k) {
-    network.press(3 * below(particles), static_cast<HandMadeWall>(below(3)), static_cast<float>(below(60)) - 10.0f);
+    const unsigned pressed = 3 * below(particles), wall = below(3);
+    network.press(pressed, static_cast<HandMadeWall>(wall), static_cast<float>(below(60)) - 10.0f);
   }
   return network.snapshot();
 }
