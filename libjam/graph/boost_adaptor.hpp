@@ -81,6 +81,10 @@ struct graph_traits<jam::ContactGraph> {
   static vertex_descriptor null_vertex() { return static_cast<vertex_descriptor>(-1); }
 };
 
+// Some of Boost's visitors are handed a const graph as the type of the graph.
+template <>
+struct graph_traits<const jam::ContactGraph> : graph_traits<jam::ContactGraph> {};
+
 template <>
 struct property_map<jam::ContactGraph, vertex_index_t> {
   using type = typed_identity_property_map<jam::ContactGraph::Vertex>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "libjam/metrics/clustering_metrics.hpp"
 #include "libjam/metrics/component_metrics.hpp"
@@ -28,6 +29,10 @@ double of_graph(FrameNetwork& network) {
 template <class Numbers>
 std::vector<double> as_values(const Numbers& numbers) {
   return {numbers.begin(), numbers.end()};
+}
+template <class Numbers>
+double sum(const Numbers& numbers) {
+  return std::accumulate(numbers.begin(), numbers.end(), 0.0);
 }
 template <class F>
 std::vector<double> of_particles(FrameNetwork& network, F f) {
@@ -75,6 +80,10 @@ constexpr auto of_frames = std::to_array<Metric>({
      [](FrameNetwork& n) { return mean_clustering(n.graph, n.corners()); }},
     {"independent_cycles", "1", "cyclomatic number of the contact network",
      [](FrameNetwork& n) { return independent_cycles(n.graph, n.components()); }},
+    {"parting_contacts", "1", "contacts without which their component falls in two (bridges of the graph)",
+     [](FrameNetwork& n) { return sum(n.partings().contact); }},
+    {"parting_particles", "1", "particles without which their component falls apart (articulation points)",
+     [](FrameNetwork& n) { return sum(n.partings().particle); }},
     {"fabric_anisotropy", "1", "anisotropy of the contacts' directions", of_graph<fabric_anisotropy>},
     {"force_fabric_anisotropy", "1", "the same, contacts weighted by their repulsive force", of_graph<force_fabric_anisotropy>},
     {"strong_fabric_anisotropy", "1", "the same of the contacts above the mean repulsive force", of_graph<strong_fabric_anisotropy>},
@@ -87,6 +96,11 @@ constexpr auto of_frames = std::to_array<Metric>({
     {"bridging_force_chains", "1", "force chains from blade to vessel", [](FrameNetwork& n) { return bridging_force_chains(n.chains()); }},
     {"bridge_strength", "N", "weakest contact of the strongest path from blade to vessel",
      [](FrameNetwork& n) { return n.bridge().strength; }},
+    {"largest_bridge_betweenness", "1", "largest betweenness of a particle on the shortest paths from blade to vessel",
+     [](FrameNetwork& n) {
+       const std::vector<double>& through = n.bridge_traffic();
+       return through.empty() ? unknown : *std::max_element(through.begin(), through.end());
+     }},
     {"bridge_flow", "N", "maximum flow of repulsive force from blade to vessel", [](FrameNetwork& n) { return n.flow().value; }},
     {"contact_disjoint_load_paths", "1", "paths from blade to vessel that share no contact",
      [](FrameNetwork& n) { return double(contact_disjoint_load_paths(n.graph)); }},
@@ -117,6 +131,9 @@ constexpr auto of_each_particle = std::to_array<ParticleMetric>({
          for (const ContactGraph::Vertex v : chain.particles) length[v] = double(chain.particles.size());
        return length;
      }},
+    {"parting", "1", "1 where its component falls apart without it", [](FrameNetwork& n) { return as_values(n.partings().particle); }},
+    {"bridge_betweenness", "1", "shortest paths from blade to vessel through it, shared among equal ones",
+     [](FrameNetwork& n) { return n.bridge_traffic(); }},
     {"on_strongest_bridge", "1", "1 on the strongest path from blade to vessel",
      [](FrameNetwork& n) {
        std::vector<double> on(n.graph.vertex_count(), 0.0);
@@ -134,6 +151,7 @@ constexpr auto of_each_contact = std::to_array<ContactMetric>({
       [](FrameNetwork& n) {
         return of_contacts(n, [&](auto c) { return repulsive_force(n.graph.snapshot().pp, c) / n.mean_force(); });
       }}},
+    {{"parting", "1", "1 where its component falls in two without it", [](FrameNetwork& n) { return as_values(n.partings().contact); }}},
     {{"in_smallest_cut", "1", "1 for a contact of the smallest cut between blade and vessel",
       [](FrameNetwork& n) {
         std::vector<double> cut(n.graph.edge_count(), 0.0);

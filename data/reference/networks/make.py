@@ -140,6 +140,11 @@ def metrics(c):
     yield "transitivity", networkx.transitivity(graph)
     yield "mean_clustering", sum(clustering.values()) / len(clustering)
     yield "independent_cycles", e - n + len(parts)
+    yield "parting_contacts", sum(1 for _ in networkx.bridges(graph))
+    yield "parting_particles", sum(1 for _ in networkx.articulation_points(graph))
+    # networkx halves the sum over the pairs of undirected graphs.
+    through = networkx.betweenness_centrality_subset(graph, sorted({a for a, _ in c.blade}), sorted({a for a, _ in c.vessel}))
+    yield "largest_bridge_betweenness", 2 * max(through.values())
     yield "mean_repulsive_force", mean
     yield "strong_contact_share", sum(f > mean for f in repulsive.values()) / len(repulsive)
     for name, weight in (("fabric_anisotropy", lambda f: 1.0), ("force_fabric_anisotropy", lambda f: max(f, 0)),

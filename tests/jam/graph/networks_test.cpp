@@ -6,9 +6,12 @@
 #include <cmath>
 #include <set>
 
+#include "libjam/graph/betweenness.hpp"
+#include "libjam/graph/components.hpp"
 #include "libjam/graph/contact_force.hpp"
 #include "libjam/graph/core_numbers.hpp"
 #include "libjam/graph/max_flow.hpp"
+#include "libjam/graph/parting.hpp"
 #include "libjam/graph/rattlers.hpp"
 #include "libjam/graph/triangles.hpp"
 #include "libjam/graph/widest_path.hpp"
@@ -217,6 +220,97 @@ TEST(WidestPath, IsBridgedAtItsStrengthAndNotAbove) {
     EXPECT_EQ(weakest, path.strength);
   });
   EXPECT_GT(bridges, 20);
+}
+
+// In how many parts the network falls without one particle, one contact, or nothing (-1).
+std::size_t parts(const ContactGraph& graph, long without_particle, long without_contact) {
+  std::set<ContactGraph::Vertex> left;
+  for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v)
+    if (long(v) != without_particle) left.insert(v);
+  std::size_t count = 0;
+  for (; !left.empty(); ++count) {
+    std::vector<ContactGraph::Vertex> next{*left.begin()};
+    left.erase(left.begin());
+    while (!next.empty()) {
+      const ContactGraph::Vertex v = next.back();
+      next.pop_back();
+      for (const ContactGraph::Neighbor& n : graph.neighbors(v))
+        if (long(n.contact) != without_contact && left.erase(n.vertex)) next.push_back(n.vertex);
+    }
+  }
+  return count;
+}
+
+TEST(Parting, IsWhereTheNetworkFallsApart) {
+  std::size_t seen = 0;
+  for_random_networks(24, [&](const ContactGraph& graph) {
+    const Parting found = parting(graph);
+    const std::size_t whole = parts(graph, -1, -1);
+    for (std::uint32_t c = 0; c < graph.edge_count(); ++c) {
+      EXPECT_EQ(found.contact[c] != 0, parts(graph, -1, c) > whole) << c;
+      seen += found.contact[c];
+    }
+    for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v)
+      EXPECT_EQ(found.particle[v] != 0, parts(graph, v, -1) > whole) << v;
+  });
+  EXPECT_GT(seen, 100u);
+}
+
+// Three grains in a row: all paths between the outer two lead through the middle one. Of a square's two, each has half.
+TEST(Betweenness, OfARowAndOfASquare) {
+  const std::vector<ContactGraph::Vertex> three{0, 1, 2}, four{0, 1, 2, 3}, first{0}, last{2};
+  Network row;
+  for (unsigned i = 0; i < 3; ++i) row.grain(i + 1, Vec3f(0.001f * float(i), 0, 0));
+  row.touch(1, 2, 1).touch(2, 3, 1);
+  const Snapshot in_row = row.snapshot();
+  const ContactGraph line(in_row, hand_made_run().walls);
+  EXPECT_THAT(betweenness(line, three, three), ElementsAre(0, 2, 0));
+  EXPECT_THAT(betweenness(line, first, last), ElementsAre(0, 1, 0));
+  EXPECT_THAT(betweenness(line, first, first), ElementsAre(0, 0, 0));
+  Network square;
+  for (unsigned i = 0; i < 4; ++i) square.grain(i + 1, Vec3f(0.001f * float(i), 0, 0));
+  square.touch(1, 2, 1).touch(2, 3, 1).touch(3, 4, 1).touch(1, 4, 1);
+  const Snapshot in_square = square.snapshot();
+  const ContactGraph loop(in_square, hand_made_run().walls);
+  EXPECT_THAT(betweenness(loop, four, four), ElementsAre(1, 1, 1, 1));
+  EXPECT_THAT(betweenness(loop, first, last), ElementsAre(0, 0.5, 0, 0.5));
+}
+
+// By its definition: with distances d and numbers of shortest paths n of all pairs, n_st(v) = n_sv n_vt where d_sv + d_vt = d_st.
+TEST(Betweenness, IsTheShareOfShortestPaths) {
+  for_random_networks(24, [](const ContactGraph& graph) {
+    const std::size_t n = graph.vertex_count();
+    constexpr int far = 1000;
+    std::vector<std::vector<int>> distance(n, std::vector<int>(n, far));
+    std::vector<std::vector<double>> paths(n, std::vector<double>(n, 0.0));
+    for (std::size_t s = 0; s < n; ++s) {
+      distance[s][s] = 0;
+      paths[s][s] = 1;
+    }
+    for (int length = 1; length < int(n); ++length)
+      for (std::size_t s = 0; s < n; ++s)
+        for (ContactGraph::Vertex v = 0; v < n; ++v) {
+          if (distance[s][v] < length) continue;
+          double ways = 0;
+          for (const ContactGraph::Neighbor& u : graph.neighbors(v))
+            if (distance[s][u.vertex] == length - 1) ways += paths[s][u.vertex];
+          if (ways > 0) distance[s][v] = length, paths[s][v] = ways;
+        }
+    std::vector<ContactGraph::Vertex> sources, targets;
+    for (ContactGraph::Vertex v = 0; v < n; ++v) {
+      if (!graph.wall_contacts(v, WallRole::blade).empty()) sources.push_back(v);
+      if (!graph.wall_contacts(v, WallRole::vessel).empty()) targets.push_back(v);
+    }
+    const std::vector<double> through = bridge_betweenness(graph);
+    for (ContactGraph::Vertex v = 0; v < n; ++v) {
+      double expected = 0;
+      for (const auto s : sources)
+        for (const auto t : targets)
+          if (s != v && t != v && s != t && distance[s][t] < far && distance[s][v] + distance[v][t] == distance[s][t])
+            expected += paths[s][v] * paths[v][t] / paths[s][t];
+      EXPECT_NEAR(through[v], expected, 1e-12 * std::max(1.0, expected)) << v;
+    }
+  });
 }
 
 }  // namespace

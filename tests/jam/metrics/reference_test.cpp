@@ -52,7 +52,7 @@ TEST(MetricsReference, RealFramesAndRandomGraphsAgreeWithNetworkxAndNumpy) {
         << line.at("metric") << " of " << line.at("network");
     ++compared;
   }
-  EXPECT_EQ(compared, 53u * 18);
+  EXPECT_EQ(compared, 53u * 21);
 }
 
 }  // namespace
