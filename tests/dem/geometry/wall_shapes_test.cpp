@@ -269,6 +269,7 @@ TEST(WallShapes, NoSurfaceMovesFasterThanItsLargestSpeed) {
   for (const WallSample& sample : wall_samples()) {
     const bool endless = sample.solid && (sample.round || std::holds_alternative<Plane>(sample.shape));
     double tightest = 0;
+    int lost = 0;
     for (int k = 0; k < 40; ++k) {
       Wall wall{sample.name, 0, sample.shape, k % 2 ? random_steady(rng) : random_table(rng)};
       if (endless) {
@@ -286,7 +287,11 @@ TEST(WallShapes, NoSurfaceMovesFasterThanItsLargestSpeed) {
         const Vec3 x = to_lab(before, random_centre(sample, 0.2 * reach, rng));
         const double a = nearest_of(touches_of(wall, before, x, reach))->distance;
         const auto later = touches_of(wall, after, x, reach);
-        ASSERT_FALSE(later.empty()) << sample.name;
+        // Only their front sides touch: a centre that the surface has just passed has none any more.
+        if (later.empty()) {
+          ++lost;
+          continue;
+        }
         const double speed = std::abs(nearest_of(later)->distance - a) / (2 * h);
         // Rounding 1e-15/h.
         EXPECT_LE(speed, bound * (1 + 1e-8) + 1e-8) << sample.name;
@@ -294,6 +299,8 @@ TEST(WallShapes, NoSurfaceMovesFasterThanItsLargestSpeed) {
       }
     }
     EXPECT_GT(tightest, 0.7) << sample.name;
+    // Within 2 h a surface goes up to some 10 um; centres lie up to 0.2 reach away from it.
+    EXPECT_LE(lost, 0.002 * 40 * 300) << sample.name;
   }
 }
 
