@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 
+#include "libjam/graph/bridge_conductance.hpp"
 #include "libjam/metrics/clustering_metrics.hpp"
 #include "libjam/metrics/component_metrics.hpp"
 #include "libjam/metrics/coordination.hpp"
@@ -102,6 +103,7 @@ constexpr auto of_frames = std::to_array<Metric>({
        return through.empty() ? unknown : *std::max_element(through.begin(), through.end());
      }},
     {"bridge_flow", "N", "maximum flow of repulsive force from blade to vessel", [](FrameNetwork& n) { return n.flow().value; }},
+    {"bridge_conductance", "N", "conductance from blade to vessel, a contact's being its repulsive force", of_graph<bridge_conductance>},
     {"contact_disjoint_load_paths", "1", "paths from blade to vessel that share no contact",
      [](FrameNetwork& n) { return double(contact_disjoint_load_paths(n.graph)); }},
     {"particle_disjoint_load_paths", "1", "paths from blade to vessel that share no particle",

@@ -122,6 +122,16 @@ def geometric(seed):
     return c
 
 
+def conductance(loads):
+    """Between the ends of a network of conductances: inverse of the effective resistance, from the pseudoinverse of the Laplacian."""
+    if not networkx.has_path(loads, "blade", "vessel"):
+        return 0
+    nodes = sorted(networkx.node_connected_component(loads, "blade"), key=str)
+    inverse = numpy.linalg.pinv(networkx.laplacian_matrix(loads, nodes, weight="capacity").toarray(), rcond=1e-14, hermitian=True)
+    b, v = nodes.index("blade"), nodes.index("vessel")
+    return 1 / (inverse[b, b] + inverse[v, v] - 2 * inverse[b, v])
+
+
 def metrics(c):
     graph = networkx.Graph()
     graph.add_nodes_from(c.place)
@@ -172,6 +182,7 @@ def metrics(c):
 
     loads = with_ends(lambda f: f)
     yield "bridge_flow", networkx.maximum_flow_value(loads, "blade", "vessel")
+    yield "bridge_conductance", conductance(loads)
     # One edge a contact: several of one grain with a wall are as many.
     yield "contact_disjoint_load_paths", networkx.maximum_flow_value(with_ends(lambda f: 1), "blade", "vessel")
     ones = with_ends(lambda f: 1)

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "libjam/graph/betweenness.hpp"
+#include "libjam/graph/bridge_conductance.hpp"
 #include "libjam/graph/components.hpp"
 #include "libjam/graph/contact_force.hpp"
 #include "libjam/graph/core_numbers.hpp"
@@ -310,6 +311,28 @@ TEST(Betweenness, IsTheShareOfShortestPaths) {
             expected += paths[s][v] * paths[v][t] / paths[s][t];
       EXPECT_NEAR(through[v], expected, 1e-12 * std::max(1.0, expected)) << v;
     }
+  });
+}
+
+// Blade 6 N, contact 3 N, vessel 2 N in a row: 1 / (1/6 + 1/3 + 1/2) = 1 N. A second grain that blade and vessel press with 4 N adds 2 N.
+// Pulling contacts and loose ends conduct nothing.
+TEST(BridgeConductance, AddsAsResistorsDo) {
+  Network network;
+  for (unsigned i = 0; i < 5; ++i) network.grain(i + 1, Vec3f(0.001f * float(i), 0, 0));
+  network.press(1, blade_wall, 6).touch(1, 2, 3).press(2, vessel_wall, 2);
+  network.touch(2, 4, 100).touch(1, 5, -50).press(5, vessel_wall, 7);
+  const Snapshot one = network.snapshot();
+  EXPECT_NEAR(bridge_conductance(ContactGraph(one, hand_made_run().walls)), 1, 1e-15);
+  network.press(3, blade_wall, 4).press(3, vessel_wall, 4);
+  const Snapshot two = network.snapshot();
+  EXPECT_NEAR(bridge_conductance(ContactGraph(two, hand_made_run().walls)), 3, 1e-15);
+}
+
+TEST(BridgeConductance, IsAtMostTheFlowAndThereWhereTheFlowIs) {
+  for_random_networks(40, [](const ContactGraph& graph) {
+    const double conductance = bridge_conductance(graph), flow = max_force_flow(graph).value;
+    EXPECT_EQ(conductance > 0, flow > 0);
+    EXPECT_LE(conductance, flow * (1 + 1e-12));
   });
 }
 

@@ -52,7 +52,7 @@ TEST(MetricsReference, RealFramesAndRandomGraphsAgreeWithNetworkxAndNumpy) {
         << line.at("metric") << " of " << line.at("network");
     ++compared;
   }
-  EXPECT_EQ(compared, 53u * 21);
+  EXPECT_EQ(compared, 53u * 22);
 }
 
 }  // namespace
