@@ -17,12 +17,12 @@ double at_wall(const ContactGraph& graph, ContactGraph::Vertex v, WallRole role)
   return sum;
 }
 
-// Particles that a path of repulsive contacts, the last of them with a wall of this role, joins to that wall.
-std::vector<ContactGraph::Vertex> joined_to(const ContactGraph& graph, WallRole role) {
+// Particles that a path of repulsive contacts, the last of them with the vessel, joins to it.
+std::vector<ContactGraph::Vertex> joined_to_vessel(const ContactGraph& graph) {
   std::vector<ContactGraph::Vertex> found;
   std::vector<std::uint8_t> seen(graph.vertex_count(), 0);
   for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v)
-    if (at_wall(graph, v, role) > 0) {
+    if (at_wall(graph, v, WallRole::vessel) > 0) {
       found.push_back(v);
       seen[v] = 1;
     }
@@ -39,7 +39,7 @@ std::vector<ContactGraph::Vertex> joined_to(const ContactGraph& graph, WallRole 
 
 double bridge_conductance(const ContactGraph& graph) {
   // Without those that do not reach the vessel (no current flows there) the matrix is positive definite.
-  const std::vector<ContactGraph::Vertex> particles = joined_to(graph, WallRole::vessel);
+  const std::vector<ContactGraph::Vertex> particles = joined_to_vessel(graph);
   std::vector<std::uint32_t> row(graph.vertex_count(), none);
   for (std::size_t k = 0; k < particles.size(); ++k) row[particles[k]] = std::uint32_t(k);
   std::vector<Eigen::Triplet<double>> entries;

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "libjam/graph/betweenness.hpp"
+#include "libjam/graph/biconnectivity.hpp"
 #include "libjam/graph/components.hpp"
 #include "libjam/graph/core_numbers.hpp"
 #include "libjam/graph/force_chains.hpp"
 #include "libjam/graph/max_flow.hpp"
-#include "libjam/graph/parting.hpp"
 #include "libjam/graph/rattlers.hpp"
 #include "libjam/graph/triangles.hpp"
 #include "libjam/graph/widest_path.hpp"
@@ -37,8 +37,8 @@ class FrameNetwork {
   // Linear ones by the usual rules.
   const std::vector<ForceChain>& chains() { return once(chains_, [&] { return force_chains(graph, loads()); }); }
   const WidestPath& bridge() { return once(bridge_, [&] { return widest_path(graph); }); }
-  const std::vector<double>& bridge_traffic() { return once(bridge_traffic_, [&] { return bridge_betweenness(graph); }); }
-  const Parting& partings() { return once(partings_, [&] { return parting(graph); }); }
+  const std::vector<double>& between() { return once(between_, [&] { return bridge_betweenness(graph); }); }
+  const Biconnectivity& biconnected() { return once(biconnected_, [&] { return biconnectivity(graph); }); }
   const MaxFlow& flow() { return once(flow_, [&] { return max_force_flow(graph); }); }
 
  private:
@@ -56,8 +56,8 @@ class FrameNetwork {
   std::optional<std::vector<Load>> loads_;
   std::optional<std::vector<ForceChain>> chains_;
   std::optional<WidestPath> bridge_;
-  std::optional<std::vector<double>> bridge_traffic_;
-  std::optional<Parting> partings_;
+  std::optional<std::vector<double>> between_;
+  std::optional<Biconnectivity> biconnected_;
   std::optional<MaxFlow> flow_;
 };
 

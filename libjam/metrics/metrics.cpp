@@ -66,11 +66,7 @@ constexpr auto of_frames = std::to_array<Metric>({
     {"largest_component_share", "1", "share of particles in the largest component",
      [](FrameNetwork& n) { return largest_component_share(n.graph, n.components()); }},
     {"rattler_share", "1", "share of particles that their contacts cannot hold, with friction",
-     [](FrameNetwork& n) {
-       double loose = 0;
-       for (const std::uint8_t l : n.loose()) loose += l;
-       return n.loose().empty() ? unknown : loose / double(n.loose().size());
-     }},
+     [](FrameNetwork& n) { return n.loose().empty() ? unknown : sum(n.loose()) / double(n.loose().size()); }},
     {"sliding_share", "1", "share of particle contacts at their friction limit", of_graph<sliding_share>},
     {"largest_core_number", "1", "largest k for which there is a k-core",
      [](FrameNetwork& n) { return n.cores().empty() ? unknown : double(*std::max_element(n.cores().begin(), n.cores().end())); }},
@@ -81,10 +77,10 @@ constexpr auto of_frames = std::to_array<Metric>({
      [](FrameNetwork& n) { return mean_clustering(n.graph, n.corners()); }},
     {"independent_cycles", "1", "cyclomatic number of the contact network",
      [](FrameNetwork& n) { return independent_cycles(n.graph, n.components()); }},
-    {"parting_contacts", "1", "contacts without which their component falls in two (bridges of the graph)",
-     [](FrameNetwork& n) { return sum(n.partings().contact); }},
-    {"parting_particles", "1", "particles without which their component falls apart (articulation points)",
-     [](FrameNetwork& n) { return sum(n.partings().particle); }},
+    {"cut_edge_count", "1", "contacts without which their component falls in two (bridges of graph theory)",
+     [](FrameNetwork& n) { return sum(n.biconnected().cut_edge); }},
+    {"articulation_point_count", "1", "particles without which their component falls apart",
+     [](FrameNetwork& n) { return sum(n.biconnected().articulation_point); }},
     {"fabric_anisotropy", "1", "anisotropy of the contacts' directions", of_graph<fabric_anisotropy>},
     {"force_fabric_anisotropy", "1", "the same, contacts weighted by their repulsive force", of_graph<force_fabric_anisotropy>},
     {"strong_fabric_anisotropy", "1", "the same of the contacts above the mean repulsive force", of_graph<strong_fabric_anisotropy>},
@@ -99,7 +95,7 @@ constexpr auto of_frames = std::to_array<Metric>({
      [](FrameNetwork& n) { return n.bridge().strength; }},
     {"largest_bridge_betweenness", "1", "largest betweenness of a particle on the shortest paths from blade to vessel",
      [](FrameNetwork& n) {
-       const std::vector<double>& through = n.bridge_traffic();
+       const std::vector<double>& through = n.between();
        return through.empty() ? unknown : *std::max_element(through.begin(), through.end());
      }},
     {"bridge_flow", "N", "maximum flow of repulsive force from blade to vessel", [](FrameNetwork& n) { return n.flow().value; }},
@@ -133,9 +129,10 @@ constexpr auto of_each_particle = std::to_array<ParticleMetric>({
          for (const ContactGraph::Vertex v : chain.particles) length[v] = double(chain.particles.size());
        return length;
      }},
-    {"parting", "1", "1 where its component falls apart without it", [](FrameNetwork& n) { return as_values(n.partings().particle); }},
+    {"articulation_point", "1", "1 where its component falls apart without it",
+     [](FrameNetwork& n) { return as_values(n.biconnected().articulation_point); }},
     {"bridge_betweenness", "1", "shortest paths from blade to vessel through it, shared among equal ones",
-     [](FrameNetwork& n) { return n.bridge_traffic(); }},
+     [](FrameNetwork& n) { return n.between(); }},
     {"on_strongest_bridge", "1", "1 on the strongest path from blade to vessel",
      [](FrameNetwork& n) {
        std::vector<double> on(n.graph.vertex_count(), 0.0);
@@ -153,7 +150,8 @@ constexpr auto of_each_contact = std::to_array<ContactMetric>({
       [](FrameNetwork& n) {
         return of_contacts(n, [&](auto c) { return repulsive_force(n.graph.snapshot().pp, c) / n.mean_force(); });
       }}},
-    {{"parting", "1", "1 where its component falls in two without it", [](FrameNetwork& n) { return as_values(n.partings().contact); }}},
+    {{"cut_edge", "1", "1 where its component falls in two without it",
+      [](FrameNetwork& n) { return as_values(n.biconnected().cut_edge); }}},
     {{"in_smallest_cut", "1", "1 for a contact of the smallest cut between blade and vessel",
       [](FrameNetwork& n) {
         std::vector<double> cut(n.graph.edge_count(), 0.0);

@@ -210,10 +210,19 @@ TEST(Metrics, AreATableOfFrames) {
   const Outcome grains = run_program("metrics --frame 3 --of particles --metric contacts,core_number " + (scratch / "run.h5"));
   EXPECT_EQ(grains.code, 0) << grains.err;
   EXPECT_EQ(grains.out.find("frame,time [s],id,contacts [1],core_number [1]\n3,"), 0u) << grains.out;
-  // No two of its grains touch.
+  // No two of its grains touch; those of a dump do.
   const Outcome contacts = run_program("metrics --frame 3 --of contacts --metric relative_force " + (scratch / "run.h5"));
   EXPECT_EQ(contacts.code, 0) << contacts.err;
   EXPECT_EQ(contacts.out, "frame,time [s],id_1,id_2,relative_force [1]\n");
+  const std::string formats = JAMSCOPE_DATA_DIR "/formats/";
+  const Outcome touching = run_program("metrics --frame 0 --of contacts --format json " + formats + "liggghts.particles.dump.xz " + formats +
+                                       "liggghts.pair.local.xz " + formats + "liggghts.wall.local.xz " + formats +
+                                       "liggghts.blade.txt.xz --map " + JAMSCOPE_DATA_DIR + "/maps/liggghts.toml");
+  EXPECT_EQ(touching.code, 0) << touching.err;
+  const nlohmann::json links = nlohmann::json::parse(touching.out);
+  ASSERT_FALSE(links.empty());
+  EXPECT_LT(links[0]["id_1"].get<int>(), links[0]["id_2"].get<int>());
+  EXPECT_TRUE(links[0].contains("relative_force"));
   const Outcome unknown = run_program("metrics --metric cordination " + (scratch / "run.h5"));
   EXPECT_EQ(unknown.code, 2);
   EXPECT_EQ(unknown.err, "error: unknown metric 'cordination'; did you mean 'coordination'?\n");

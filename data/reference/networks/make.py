@@ -150,8 +150,8 @@ def metrics(c):
     yield "transitivity", networkx.transitivity(graph)
     yield "mean_clustering", sum(clustering.values()) / len(clustering)
     yield "independent_cycles", e - n + len(parts)
-    yield "parting_contacts", sum(1 for _ in networkx.bridges(graph))
-    yield "parting_particles", sum(1 for _ in networkx.articulation_points(graph))
+    yield "cut_edge_count", sum(1 for _ in networkx.bridges(graph))
+    yield "articulation_point_count", sum(1 for _ in networkx.articulation_points(graph))
     # networkx halves the sum over the pairs of undirected graphs.
     through = networkx.betweenness_centrality_subset(graph, sorted({a for a, _ in c.blade}), sorted({a for a, _ in c.vessel}))
     yield "largest_bridge_betweenness", 2 * max(through.values())

@@ -269,7 +269,6 @@ TEST(WallShapes, NoSurfaceMovesFasterThanItsLargestSpeed) {
   for (const WallSample& sample : wall_samples()) {
     const bool endless = sample.solid && (sample.round || std::holds_alternative<Plane>(sample.shape));
     double tightest = 0;
-    int lost = 0;
     for (int k = 0; k < 40; ++k) {
       Wall wall{sample.name, 0, sample.shape, k % 2 ? random_steady(rng) : random_table(rng)};
       if (endless) {
@@ -287,9 +286,8 @@ TEST(WallShapes, NoSurfaceMovesFasterThanItsLargestSpeed) {
         const Vec3 x = to_lab(before, random_centre(sample, 0.2 * reach, rng));
         const double a = nearest_of(touches_of(wall, before, x, reach))->distance;
         const auto later = touches_of(wall, after, x, reach);
-        // Only their front sides touch: a centre that the surface has just passed has none any more.
-        if (later.empty()) {
-          ++lost;
+        if (later.empty()) {  // only front sides touch: the surface has passed the centre, which it then was near enough for
+          EXPECT_LE(a, 2 * h * bound) << sample.name;
           continue;
         }
         const double speed = std::abs(nearest_of(later)->distance - a) / (2 * h);
@@ -299,8 +297,6 @@ TEST(WallShapes, NoSurfaceMovesFasterThanItsLargestSpeed) {
       }
     }
     EXPECT_GT(tightest, 0.7) << sample.name;
-    // Within 2 h a surface goes up to some 10 um; centres lie up to 0.2 reach away from it.
-    EXPECT_LE(lost, 0.002 * 40 * 300) << sample.name;
   }
 }
 

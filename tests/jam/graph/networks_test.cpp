@@ -7,12 +7,11 @@
 #include <set>
 
 #include "libjam/graph/betweenness.hpp"
+#include "libjam/graph/biconnectivity.hpp"
 #include "libjam/graph/bridge_conductance.hpp"
-#include "libjam/graph/components.hpp"
 #include "libjam/graph/contact_force.hpp"
 #include "libjam/graph/core_numbers.hpp"
 #include "libjam/graph/max_flow.hpp"
-#include "libjam/graph/parting.hpp"
 #include "libjam/graph/rattlers.hpp"
 #include "libjam/graph/triangles.hpp"
 #include "libjam/graph/widest_path.hpp"
@@ -242,17 +241,17 @@ std::size_t parts(const ContactGraph& graph, long without_particle, long without
   return count;
 }
 
-TEST(Parting, IsWhereTheNetworkFallsApart) {
+TEST(Biconnectivity, IsWhereTheNetworkFallsApart) {
   std::size_t seen = 0;
   for_random_networks(24, [&](const ContactGraph& graph) {
-    const Parting found = parting(graph);
+    const Biconnectivity found = biconnectivity(graph);
     const std::size_t whole = parts(graph, -1, -1);
     for (std::uint32_t c = 0; c < graph.edge_count(); ++c) {
-      EXPECT_EQ(found.contact[c] != 0, parts(graph, -1, c) > whole) << c;
-      seen += found.contact[c];
+      EXPECT_EQ(found.cut_edge[c] != 0, parts(graph, -1, c) > whole) << c;
+      seen += found.cut_edge[c];
     }
     for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v)
-      EXPECT_EQ(found.particle[v] != 0, parts(graph, v, -1) > whole) << v;
+      EXPECT_EQ(found.articulation_point[v] != 0, parts(graph, v, -1) > whole) << v;
   });
   EXPECT_GT(seen, 100u);
 }
