@@ -144,7 +144,8 @@ function options(spec: TimePlot, log: boolean, width: number, view: TimeView): u
     padding: [10, 22, null, null],  // right: half of the last time label
     scales: { x: { time: false }, y: { distr: log ? 3 : 1, log: 10, range } },
     axes: [
-      { ...axis, label: 'Time (s)', labelSize: 18, size: 34, values: (_p, at, _a, _s, step) => at.map((v) => v.toFixed(decimals(step)).replace('-', '−')) },
+      // Room for the labels of a run of a millisecond, which have five decimals.
+      { ...axis, space: 80, label: 'Time (s)', labelSize: 18, size: 34, values: (_p, at, _a, _s, step) => at.map((v) => v.toFixed(decimals(step)).replace('-', '−')) },
       {
         ...axis,
         ...(log ? { grid: { ...axis.grid, filter: decades }, ticks: { ...axis.ticks, filter: decades } } : {}),
