@@ -21,11 +21,12 @@ libdem/scene    libdem/case libdem/particles libdem/geometry libdem/neighbors li
 libdem/.            libdem/case libdem/particles libdem/geometry libdem/neighbors libdem/contact libdem/simulation libdem/bed libdem/scene
 libjam/snapshot
 libjam/graph        libjam/snapshot
-libjam/metrics      libjam/snapshot libjam/graph
+libjam/tessellation libjam/snapshot
 libjam/jamming      libjam/snapshot libjam/graph
-libjam/events       libjam/snapshot libjam/graph libjam/metrics libjam/jamming
-libjam/statistics   libjam/snapshot libjam/graph libjam/metrics libjam/jamming libjam/events
-libjam/.            libjam/snapshot libjam/graph libjam/metrics libjam/jamming libjam/events libjam/statistics
+libjam/metrics      libjam/snapshot libjam/graph libjam/tessellation libjam/jamming
+libjam/events       libjam/snapshot libjam/graph libjam/jamming
+libjam/statistics   libjam/snapshot libjam/graph libjam/jamming libjam/events
+libjam/.            libjam/snapshot libjam/graph libjam/tessellation libjam/jamming libjam/metrics libjam/events libjam/statistics
 apps                libdem libjam
 tests/support
 tests/dem           libdem tests/support

@@ -42,7 +42,6 @@ struct Options {
   InspectOptions inspect;
   MetricsOptions metrics;
   BenchOptions bench;
-  bool all_frames = false;
 };
 
 const std::map<std::string, LogFormat> log_formats{{"text", LogFormat::text}, {"jsonl", LogFormat::jsonl}};
@@ -168,17 +167,19 @@ Command add_metrics(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("metrics", "network metrics of every frame, particle or contact, as a table on standard output");
   MetricsOptions& m = o.metrics;
   add_input(c, m.input);
-  auto* const frame = c.add_option("--frame", m.frame, "this frame only, counted from 0")->type_name("K");
-  c.add_flag("--all", o.all_frames, "every frame (the default)")->excludes(frame);
-  const std::map<std::string, MetricsOf> parts{
-      {"frames", MetricsOf::frames}, {"particles", MetricsOf::particles}, {"contacts", MetricsOf::contacts}};
+  c.add_option("--frame", m.frame, "this frame only, counted from 0; default: every frame")->type_name("K");
+  const std::map<std::string, MetricsOf> parts{{"frames", MetricsOf::frames},
+                                               {"changes", MetricsOf::changes},
+                                               {"particles", MetricsOf::particles},
+                                               {"contacts", MetricsOf::contacts}};
   c.add_option("--of", m.of, "a row for each of these (default: frames)")
       ->transform(CLI::CheckedTransformer(parts).description(""))
-      ->type_name("frames|particles|contacts");
-  c.add_option("--metric", m.names, "names from the list below, separated by commas; default: all")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME,...");
+      ->type_name("frames|changes|particles|contacts");
+  auto* const names = c.add_option("--metric", m.names, "names from the list below, separated by commas; default: those without *")
+                          ->delimiter(',')
+                          ->allow_extra_args(false)
+                          ->type_name("NAME,...");
+  c.add_flag("--all", m.all, "all metrics of the list, those with * too")->excludes(names);
   const std::map<std::string, TableFormat> formats{{"csv", TableFormat::csv}, {"json", TableFormat::json}};
   c.add_option("--format", m.format, "csv or json")
       ->transform(CLI::CheckedTransformer(formats).description(""))
@@ -186,6 +187,9 @@ Command add_metrics(CLI::App& app, Options& o) {
   c.footer(metric_list() +
            "\nExamples:\n  jamscope metrics run/run.h5 --metric coordination,bridge_strength > bridge.csv\n"
            "  jamscope metrics run/run.h5 --of particles --frame 3 > grains.csv");
+  m.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  add_threads(c, m.threads, "number of threads; the results do not depend on it");
+  c.add_flag("-q,--quiet", m.quiet, "no progress");
   return [&o] { return network_metrics(o.metrics); };
 }
 

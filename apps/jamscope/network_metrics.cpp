@@ -1,13 +1,18 @@
 #include "apps/jamscope/network_metrics.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
+#include <future>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "apps/jamscope/console.hpp"
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/toml_reader.hpp"
 #include "libjam/metrics/metrics.hpp"
@@ -15,12 +20,14 @@
 namespace jamscope {
 namespace {
 
-// The rows of a table with these names; all for none.
+// The rows of a table with the names asked for; of none those of low cost, or all.
 template <class Row>
-std::vector<Row> chosen_metrics(std::span<const Row> table, const std::vector<std::string>& names) {
-  if (names.empty()) return {table.begin(), table.end()};
+std::vector<Row> chosen_metrics(std::span<const Row> table, const MetricsOptions& options) {
   std::vector<Row> chosen;
-  for (const std::string& name : names) {
+  if (options.names.empty())
+    std::copy_if(table.begin(), table.end(), std::back_inserter(chosen),
+                 [&](const Row& r) { return options.all || r.cost == jam::Cost::low; });
+  for (const std::string& name : options.names) {
     const auto row = std::find_if(table.begin(), table.end(), [&](const Row& r) { return r.name == name; });
     if (row == table.end()) {
       std::vector<std::string> known;
@@ -80,83 +87,140 @@ std::vector<std::pair<std::string, std::string>> columns(const std::vector<std::
   return all;
 }
 
-// For each frame asked for: f(frame, its network).
-template <class F>
-void for_each_frame(const MetricsOptions& options, const jam::SnapshotSource& source, F f) {
+// The network of a frame, which refers to it.
+struct Frame {
+  jam::ContactGraph graph;
+  jam::FrameNetwork network;
+  Frame(const jam::Snapshot& snapshot, const jam::RunInfo& run) : graph(snapshot, run.walls), network(graph, run) {}
+  Frame(const Frame&) = delete;
+};
+
+using Rows = std::vector<std::vector<double>>;
+
+// Prints rows_of(frame number, snapshot before it or null, snapshot) of each frame asked for, in order. One thread reads; up to
+// options.threads frames are worked on at the same time.
+template <class RowsOf>
+void print_frames(const MetricsOptions& options, const jam::SnapshotSource& source, bool with_before, Table& table, RowsOf rows_of) {
   const std::size_t first = options.frame.value_or(0), last = options.frame ? first + 1 : source.frames;
+  const std::size_t at_a_time = std::size_t(std::max(options.threads, 1));
+  Console console(stderr, LogFormat::text, options.quiet);
+  Progress progress;
+  progress.stage = "metrics";
+  progress.unit = "frames";
+  progress.total = double(last - first);
+  std::deque<std::future<Rows>> under_way;
+  const auto print_next = [&] {
+    for (const std::vector<double>& row : under_way.front().get()) table.row(row);
+    under_way.pop_front();
+    progress.done += 1;
+    console.progress(progress);
+  };
+  const bool single = last - first < 2;
+  omp_set_num_threads(int(at_a_time));
+  std::shared_ptr<const jam::Snapshot> before;
+  if (with_before && first > 0) before = std::make_shared<const jam::Snapshot>(source.read(first - 1));
   for (std::size_t frame = first; frame < last; ++frame) {
-    const jam::Snapshot snapshot = source.read(frame);
-    const jam::ContactGraph graph(snapshot, source.info.walls);
-    jam::FrameNetwork network(graph);
-    f(frame, network);
+    auto snapshot = std::make_shared<const jam::Snapshot>(source.read(frame));
+    if (under_way.size() == at_a_time) print_next();
+    under_way.push_back(std::async(std::launch::async, [&rows_of, frame, before, snapshot, single, at_a_time] {
+      omp_set_num_threads(single ? int(at_a_time) : 1);  // of this thread only
+      return rows_of(frame, before.get(), *snapshot);
+    }));
+    if (with_before) before = std::move(snapshot);
   }
+  while (!under_way.empty()) print_next();
+  table.finish();
 }
 
-void print_frames(const MetricsOptions& options, const jam::SnapshotSource& source, const std::vector<jam::Metric>& metrics) {
+void print_metrics(const MetricsOptions& options, const jam::SnapshotSource& source, const std::vector<jam::Metric>& metrics) {
   Table table(options.format, 2, columns({}, metrics));
-  for_each_frame(options, source, [&](std::size_t frame, jam::FrameNetwork& network) {
-    std::vector<double> row{double(frame), network.graph.snapshot().time};
-    for (const jam::Metric& metric : metrics) row.push_back(metric.value(network));
-    table.row(row);
+  print_frames(options, source, false, table, [&](std::size_t number, const jam::Snapshot*, const jam::Snapshot& snapshot) -> Rows {
+    Frame frame(snapshot, source.info);
+    std::vector<double> row{double(number), snapshot.time};
+    for (const jam::Metric& metric : metrics) row.push_back(metric.value(frame.network));
+    return {row};
   });
-  table.finish();
 }
 
-// One row for each of `rows(snapshot)`, with `ids(snapshot, row)` before its metrics.
-template <class Row, class Rows, class Ids>
-void print_parts(const MetricsOptions& options, const jam::SnapshotSource& source, const std::vector<Row>& metrics,
-                 const std::vector<std::string>& id_names, Rows rows, Ids ids) {
-  Table table(options.format, 2 + id_names.size(), columns(id_names, metrics));
-  for_each_frame(options, source, [&](std::size_t frame, jam::FrameNetwork& network) {
-    const jam::Snapshot& snapshot = network.graph.snapshot();
-    std::vector<std::vector<double>> values;
-    for (const Row& metric : metrics) values.push_back(metric.value(network));
-    for (std::size_t k = 0; k < rows(snapshot); ++k) {
-      std::vector<double> row{double(frame), snapshot.time};
-      for (const double id : ids(snapshot, k)) row.push_back(id);
-      for (const std::vector<double>& value : values) row.push_back(value[k]);
-      table.row(row);
-    }
+void print_changes(const MetricsOptions& options, const jam::SnapshotSource& source, const std::vector<jam::ChangeMetric>& metrics) {
+  Table table(options.format, 2, columns({}, metrics));
+  print_frames(options, source, true, table, [&](std::size_t number, const jam::Snapshot* before, const jam::Snapshot& now) -> Rows {
+    if (before == nullptr) return {};
+    Frame first(*before, source.info), second(now, source.info);
+    std::vector<double> row{double(number), now.time};
+    for (const jam::ChangeMetric& metric : metrics) row.push_back(metric.value(first.network, second.network));
+    return {row};
   });
-  table.finish();
+}
+
+// One row for each of `count(snapshot)`, with `ids(snapshot, row)` before its metrics.
+template <class Row, class Count, class Ids>
+void print_parts(const MetricsOptions& options, const jam::SnapshotSource& source, const std::vector<Row>& metrics,
+                 const std::vector<std::string>& id_names, Count count, Ids ids) {
+  Table table(options.format, 2 + id_names.size(), columns(id_names, metrics));
+  print_frames(options, source, false, table, [&](std::size_t number, const jam::Snapshot*, const jam::Snapshot& snapshot) {
+    Frame frame(snapshot, source.info);
+    std::vector<std::vector<double>> values;
+    for (const Row& metric : metrics) values.push_back(metric.value(frame.network));
+    Rows rows(count(snapshot));
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      rows[k] = {double(number), snapshot.time};
+      for (const double id : ids(snapshot, k)) rows[k].push_back(id);
+      for (const std::vector<double>& value : values) rows[k].push_back(value[k]);
+    }
+    return rows;
+  });
 }
 
 template <class Row>
 std::string list(const char* title, std::span<const Row> table) {
   std::string text = fmt::format("{}:\n", title);
-  for (const Row& metric : table) text += fmt::format("  {:<29}[{}] {}\n", metric.name, metric.unit, metric.doc);
+  for (const Row& metric : table)
+    text += fmt::format("  {:<30}{}[{}] {}\n", metric.name, metric.cost == jam::Cost::high ? '*' : ' ', metric.unit, metric.doc);
   return text;
 }
 
 }  // namespace
 
 std::string metric_list() {
-  return list("Metrics of frames", jam::metrics()) + list("Metrics of particles (--of particles)", jam::particle_metrics()) +
+  return "Those with * take long, some of them minutes for 35,000 particles; by name or with --all.\n" +
+         list("Metrics of frames", jam::metrics()) +
+         list("Metrics of the change from the frame before (--of changes)", jam::change_metrics()) +
+         list("Metrics of particles (--of particles)", jam::particle_metrics()) +
          list("Metrics of contacts between particles (--of contacts)", jam::contact_metrics());
 }
 
 int network_metrics(const MetricsOptions& options) {
   // Names are checked before a file is opened.
-  const bool frames = options.of == MetricsOf::frames, particles = options.of == MetricsOf::particles;
-  const auto of_frames = chosen_metrics(jam::metrics(), frames ? options.names : std::vector<std::string>{});
-  const auto of_particles = chosen_metrics(jam::particle_metrics(), particles ? options.names : std::vector<std::string>{});
-  const auto of_contacts = chosen_metrics(jam::contact_metrics(), frames || particles ? std::vector<std::string>{} : options.names);
+  std::vector<jam::Metric> of_frames;
+  std::vector<jam::ChangeMetric> of_changes;
+  std::vector<jam::ParticleMetric> of_particles;
+  std::vector<jam::ContactMetric> of_contacts;
+  switch (options.of) {
+    case MetricsOf::frames: of_frames = chosen_metrics(jam::metrics(), options); break;
+    case MetricsOf::changes: of_changes = chosen_metrics(jam::change_metrics(), options); break;
+    case MetricsOf::particles: of_particles = chosen_metrics(jam::particle_metrics(), options); break;
+    case MetricsOf::contacts: of_contacts = chosen_metrics(jam::contact_metrics(), options); break;
+  }
   const jam::SnapshotSource source = open_stored_run(options.input);
   if (options.frame && *options.frame >= source.frames)
     throw UsageError(fmt::format("there is no frame {}: the data have frames 0 to {}", *options.frame,
                                  source.frames == 0 ? "none" : std::to_string(source.frames - 1)));
-  if (frames) {
-    print_frames(options, source, of_frames);
-  } else if (particles) {
-    print_parts(
-        options, source, of_particles, {"id"}, [](const jam::Snapshot& s) { return s.particles.size(); },
-        [](const jam::Snapshot& s, std::size_t k) { return std::array{double(s.particles.id[k])}; });
-  } else {
-    print_parts(
-        options, source, of_contacts, {"id_1", "id_2"}, [](const jam::Snapshot& s) { return s.pp.size(); },
-        [](const jam::Snapshot& s, std::size_t k) {
-          return std::array{double(s.particles.id[s.pp.row[k][0]]), double(s.particles.id[s.pp.row[k][1]])};
-        });
+  switch (options.of) {
+    case MetricsOf::frames: print_metrics(options, source, of_frames); break;
+    case MetricsOf::changes: print_changes(options, source, of_changes); break;
+    case MetricsOf::particles:
+      print_parts(
+          options, source, of_particles, {"id"}, [](const jam::Snapshot& s) { return s.particles.size(); },
+          [](const jam::Snapshot& s, std::size_t k) { return std::array{double(s.particles.id[k])}; });
+      break;
+    case MetricsOf::contacts:
+      print_parts(
+          options, source, of_contacts, {"id_1", "id_2"}, [](const jam::Snapshot& s) { return s.pp.size(); },
+          [](const jam::Snapshot& s, std::size_t k) {
+            return std::array{double(s.particles.id[s.pp.row[k][0]]), double(s.particles.id[s.pp.row[k][1]])};
+          });
+      break;
   }
   return 0;
 }

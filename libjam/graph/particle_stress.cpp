@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "libjam/graph/contact_force.hpp"
+#include "libjam/graph/wall_touch.hpp"
 
 namespace jam {
 namespace {
@@ -37,20 +38,10 @@ std::vector<Eigen::Matrix3d> particle_stress(const ContactGraph& graph, std::spa
     stress[j] += double{p.radius[j]} / radii * moment;
   }
   for (std::size_t c = 0; c < s.pw.size(); ++c) {
-    const std::uint32_t i = s.pw.row[c];
-    const Vec3 centre = p.position[i].cast<double>();
-    Vec3 normal, arm;
-    if (present(s.pw.point, s.pw.size())) {
-      arm = s.pw.point[c].cast<double>() - centre;
-      normal = present(s.pw.normal, s.pw.size()) ? Vec3(s.pw.normal[c].cast<double>()) : Vec3(arm.normalized());
-    } else if (present(s.pw.normal, s.pw.size())) {
-      normal = s.pw.normal[c].cast<double>();
-      arm = double{p.radius[i]} * normal;
-    } else {
-      continue;
-    }
-    const Vec3 force = tangential_of(s.pw.tangential_force, s.pw.size(), c) - normal_force(s.pw, c) * normal;
-    stress[i] += arm * force.transpose();
+    const std::optional<WallTouch> touch = wall_touch(s, c);
+    if (!touch) continue;
+    const Vec3 force = tangential_of(s.pw.tangential_force, s.pw.size(), c) - normal_force(s.pw, c) * touch->normal;
+    stress[s.pw.row[c]] += touch->arm * force.transpose();
   }
   for (std::size_t i = 0; i < stress.size(); ++i) stress[i] = (0.5 / volume[i] * (stress[i] + stress[i].transpose())).eval();
   return stress;

@@ -5,24 +5,34 @@
 
 #include "libjam/graph/betweenness.hpp"
 #include "libjam/graph/biconnectivity.hpp"
+#include "libjam/graph/communities.hpp"
 #include "libjam/graph/components.hpp"
 #include "libjam/graph/core_numbers.hpp"
 #include "libjam/graph/force_chains.hpp"
 #include "libjam/graph/max_flow.hpp"
+#include "libjam/graph/path_lengths.hpp"
+#include "libjam/graph/persistence.hpp"
 #include "libjam/graph/rattlers.hpp"
+#include "libjam/graph/rigidity.hpp"
 #include "libjam/graph/triangles.hpp"
 #include "libjam/graph/widest_path.hpp"
+#include "libjam/jamming/compressive_force.hpp"
+#include "libjam/jamming/jam_clusters.hpp"
 #include "libjam/metrics/mean_repulsive_force.hpp"
+#include "libjam/metrics/mobilisation.hpp"
+#include "libjam/tessellation/power_cells.hpp"
 
 namespace jam {
 
 class FrameNetwork {
  public:
-  // Refers to the graph, which must outlive it.
-  explicit FrameNetwork(const ContactGraph& contacts) : graph(contacts) {}
-  FrameNetwork(ContactGraph&&) = delete;
+  // Refers to both, which must outlive it. The run is the one that the graph's walls belong to.
+  FrameNetwork(const ContactGraph& contacts, const RunInfo& of_run) : graph(contacts), run(of_run) {}
+  FrameNetwork(ContactGraph&&, const RunInfo&) = delete;
+  FrameNetwork(const ContactGraph&, RunInfo&&) = delete;
 
   const ContactGraph& graph;
+  const RunInfo& run;
 
   const Components& components() { return once(components_, [&] { return connected_components(graph); }); }
   const std::vector<std::uint32_t>& cores() { return once(cores_, [&] { return core_numbers(graph); }); }
@@ -37,9 +47,25 @@ class FrameNetwork {
   // Linear ones by the usual rules.
   const std::vector<ForceChain>& chains() { return once(chains_, [&] { return force_chains(graph, loads()); }); }
   const WidestPath& bridge() { return once(bridge_, [&] { return widest_path(graph); }); }
-  const std::vector<double>& between() { return once(between_, [&] { return bridge_betweenness(graph); }); }
+  const Betweenness& between() { return once(between_, [&] { return bridge_betweenness(graph); }); }
   const Biconnectivity& biconnected() { return once(biconnected_, [&] { return biconnectivity(graph); }); }
   const MaxFlow& flow() { return once(flow_, [&] { return max_force_flow(graph); }); }
+  const PathLengths& paths() { return once(paths_, [&] { return path_lengths(graph); }); }
+  const Communities& groups() { return once(groups_, [&] { return communities(graph); }); }
+  const Rigidity& rigid() { return once(rigid_, [&] { return rigidity(graph); }); }
+  const PersistenceDiagram& parts() { return once(parts_, [&] { return persistence_of_components(graph); }); }
+  const PersistenceDiagram& loops() { return once(loops_, [&] { return persistence_of_loops_not_filled(graph); }); }
+  const std::vector<double>& mobilised() { return once(mobilised_, [&] { return mobilisation(graph, run); }); }
+  // m^3, of the power cells.
+  const std::vector<double>& cells() { return once(cells_, [&] { return power_cell_volumes(graph.snapshot(), run.walls); }); }
+  const std::vector<double>& compressive() {
+    return once(compressive_, [&] { return compressive_forces(graph, Criteria{}.measure); });
+  }
+  // By the usual criteria.
+  const std::vector<JammedParticle>& jammed() {
+    return once(jammed_, [&] { return jammed_particles(graph, compressive(), run, Criteria{}); });
+  }
+  const std::vector<Cluster>& clusters() { return once(clusters_, [&] { return jam_clusters(graph, jammed(), Criteria{}, 0); }); }
 
  private:
   template <class Value, class Find>
@@ -56,9 +82,16 @@ class FrameNetwork {
   std::optional<std::vector<Load>> loads_;
   std::optional<std::vector<ForceChain>> chains_;
   std::optional<WidestPath> bridge_;
-  std::optional<std::vector<double>> between_;
+  std::optional<Betweenness> between_;
   std::optional<Biconnectivity> biconnected_;
   std::optional<MaxFlow> flow_;
+  std::optional<PathLengths> paths_;
+  std::optional<Communities> groups_;
+  std::optional<Rigidity> rigid_;
+  std::optional<PersistenceDiagram> parts_, loops_;
+  std::optional<std::vector<double>> mobilised_, cells_, compressive_;
+  std::optional<std::vector<JammedParticle>> jammed_;
+  std::optional<std::vector<Cluster>> clusters_;
 };
 
 }  // namespace jam

@@ -4,15 +4,22 @@
 #include <array>
 #include <numeric>
 
+#include "libjam/graph/algebraic_connectivity.hpp"
 #include "libjam/graph/bridge_conductance.hpp"
+#include "libjam/graph/contact_length.hpp"
+#include "libjam/graph/diagram_distance.hpp"
+#include "libjam/metrics/chain_shape.hpp"
 #include "libjam/metrics/clustering_metrics.hpp"
+#include "libjam/metrics/community_metrics.hpp"
 #include "libjam/metrics/component_metrics.hpp"
+#include "libjam/metrics/contact_turnover.hpp"
 #include "libjam/metrics/coordination.hpp"
 #include "libjam/metrics/coordination_with_walls.hpp"
 #include "libjam/metrics/fabric.hpp"
 #include "libjam/metrics/force_chain_metrics.hpp"
 #include "libjam/metrics/mechanical_coordination.hpp"
 #include "libjam/metrics/sliding_share.hpp"
+#include "libjam/metrics/solid_fraction.hpp"
 #include "libjam/metrics/strong_contact_share.hpp"
 
 namespace jam {
@@ -48,6 +55,17 @@ std::vector<double> of_contacts(FrameNetwork& network, F f) {
   return values;
 }
 
+double mean(const std::vector<double>& values) {
+  return values.empty() ? unknown : sum(values) / double(values.size());
+}
+double largest(const std::vector<double>& values) {
+  return values.empty() ? unknown : *std::max_element(values.begin(), values.end());
+}
+std::vector<double> or_unknown(std::vector<double> values, std::size_t size) {
+  if (values.size() != size) values.assign(size, unknown);
+  return values;
+}
+
 // To add a metric: write a free function in a header of its own, or in that of its closest kin, whose comment states formula,
 // reference and what happens where it is undefined (NaN), include it above, and add its row to the table of what it is a number of.
 // What other metrics need as well belongs into FrameNetwork. The suites in tests/jam/metrics run over these tables: the new row is tested
@@ -58,6 +76,18 @@ constexpr auto of_frames = std::to_array<Metric>({
     {"coordination_with_walls", "1", "mean number of contacts per particle, walls counted", of_graph<coordination_with_walls>},
     {"mechanical_coordination", "1", "coordination of the particles with two or more contacts (Thornton)",
      of_graph<mechanical_coordination>},
+    {"isostatic_coordination", "1", "coordination at which constraints and freedoms are as many, by the sliding contacts there are",
+     [](FrameNetwork& n) { return isostatic_coordination(sliding_per_particle(n.graph)); }},
+    {"solid_fraction", "1", "volume of the particles over that of their power cells, open cells left out",
+     [](FrameNetwork& n) { return solid_fraction(n.graph.snapshot(), n.cells()); }, Cost::high},
+    {"mean_compressive_force", "N", "mean over the particles of the sum of their repulsive normal forces, walls included",
+     [](FrameNetwork& n) { return mean(n.compressive()); }},
+    {"largest_compressive_force", "N", "largest of them", [](FrameNetwork& n) { return largest(n.compressive()); }},
+    {"jammed_particles", "1", "particles whose compressive force is above 20 N", [](FrameNetwork& n) { return double(n.jammed().size()); }},
+    {"bridging_clusters", "1", "clusters of jammed particles loaded by blade and vessel",
+     [](FrameNetwork& n) {
+       return double(std::count_if(n.clusters().begin(), n.clusters().end(), [](const Cluster& c) { return c.bridges; }));
+     }},
     {"mean_repulsive_force", "N", "mean normal force of the compressed particle contacts",
      [](FrameNetwork& n) { return n.mean_force(); }},
     {"strong_contact_share", "1", "share of compressed particle contacts above their mean force", of_graph<strong_contact_share>},
@@ -68,6 +98,12 @@ constexpr auto of_frames = std::to_array<Metric>({
     {"rattler_share", "1", "share of particles that their contacts cannot hold, with friction",
      [](FrameNetwork& n) { return n.loose().empty() ? unknown : sum(n.loose()) / double(n.loose().size()); }},
     {"sliding_share", "1", "share of particle contacts at their friction limit", of_graph<sliding_share>},
+    {"largest_sliding_cluster_share", "1", "share of particles in the largest cluster joined by sliding contacts",
+     of_graph<largest_sliding_cluster_share>},
+    {"mean_mobilisation", "1", "tangential force over friction times repulsive force, mean of the contacts that push",
+     [](FrameNetwork& n) { return mean_mobilisation(n.mobilised()); }},
+    {"mean_contact_age", "s", "mean time for which the contacts have held",
+     [](FrameNetwork& n) { return mean(contact_ages(n.graph.snapshot(), n.run.dt)); }},
     {"largest_core_number", "1", "largest k for which there is a k-core",
      [](FrameNetwork& n) { return n.cores().empty() ? unknown : double(*std::max_element(n.cores().begin(), n.cores().end())); }},
     {"triangle_count", "1", "triples of particles that touch each other", [](FrameNetwork& n) { return triangle_count(n.corners()); }},
@@ -81,6 +117,34 @@ constexpr auto of_frames = std::to_array<Metric>({
      [](FrameNetwork& n) { return sum(n.biconnected().cut_edge); }},
     {"articulation_point_count", "1", "particles without which their component falls apart",
      [](FrameNetwork& n) { return sum(n.biconnected().articulation_point); }},
+    {"path_efficiency", "1", "mean over the pairs of particles of 1 over the contacts on their shortest path",
+     [](FrameNetwork& n) { return n.paths().efficiency; }, Cost::high},
+    {"mean_path_length", "1", "contacts on the shortest path, mean of the pairs that one joins",
+     [](FrameNetwork& n) { return n.paths().mean; }, Cost::high},
+    {"longest_path_length", "1", "contacts on the longest of the shortest paths: the diameter",
+     [](FrameNetwork& n) { return n.paths().longest; }, Cost::high},
+    {"algebraic_connectivity", "1", "second smallest eigenvalue of the Laplacian of the largest component",
+     [](FrameNetwork& n) { return algebraic_connectivity(n.graph); }, Cost::high},
+    {"zero_modes", "1", "motions of the particles that no contact resists, walls held still",
+     [](FrameNetwork& n) { return double(n.rigid().zero_modes()); }, Cost::high},
+    {"self_stresses", "1", "independent sets of contact forces in balance by themselves",
+     [](FrameNetwork& n) { return double(n.rigid().self_stresses()); }, Cost::high},
+    {"community_count", "1", "communities of the force network, single particles included",
+     [](FrameNetwork& n) { return n.groups().size.empty() ? unknown : double(n.groups().size.size()); }, Cost::high},
+    {"modularity", "1", "quality of the communities against the geographical null model, over the sum of all repulsive forces",
+     [](FrameNetwork& n) { return n.groups().modularity; }, Cost::high},
+    {"gap_factor", "1", "how far the communities branch and enclose gaps; near 0 for a compact block",
+     [](FrameNetwork& n) { return gap_factor(n.graph, n.groups()); }, Cost::high},
+    {"hull_ratio", "1", "volume of the convex hull of a community over that of its particles, mean",
+     [](FrameNetwork& n) { return hull_ratio(n.graph, n.groups()); }, Cost::high},
+    {"parts_at_mean_force", "1", "parts of the network of the contacts above the mean force (Betti number 0)",
+     [](FrameNetwork& n) { return double(betti_number(n.parts(), n.mean_force())); }},
+    {"loops_at_mean_force", "1", "loops of that network that its triangles do not fill (Betti number 1)",
+     [](FrameNetwork& n) { return double(betti_number(n.loops(), n.mean_force())); }},
+    {"persistence_of_parts", "1", "sum over the parts of birth less death, over the mean force",
+     [](FrameNetwork& n) { return n.parts().empty() ? unknown : total_persistence(n.parts()) / n.mean_force(); }},
+    {"persistence_of_loops", "1", "the same of the loops that triangles do not fill",
+     [](FrameNetwork& n) { return n.parts().empty() ? unknown : total_persistence(n.loops()) / n.mean_force(); }},
     {"fabric_anisotropy", "1", "anisotropy of the contacts' directions", of_graph<fabric_anisotropy>},
     {"force_fabric_anisotropy", "1", "the same, contacts weighted by their repulsive force", of_graph<force_fabric_anisotropy>},
     {"strong_fabric_anisotropy", "1", "the same of the contacts above the mean repulsive force", of_graph<strong_fabric_anisotropy>},
@@ -91,19 +155,39 @@ constexpr auto of_frames = std::to_array<Metric>({
     {"mean_force_chain_length", "1", "particles of a force chain in the mean",
      [](FrameNetwork& n) { return mean_force_chain_length(n.chains()); }},
     {"bridging_force_chains", "1", "force chains from blade to vessel", [](FrameNetwork& n) { return bridging_force_chains(n.chains()); }},
+    {"chain_straightness", "1", "end-to-end distance of a force chain over its length along the links, mean",
+     [](FrameNetwork& n) { return chain_straightness(n.graph, n.chains()); }},
+    {"chain_bend", "rad", "turn from one link of a force chain to the next, mean",
+     [](FrameNetwork& n) { return chain_bend(n.graph, n.chains()); }},
+    {"chain_across_gap", "1", "|cos| between a force chain and the radius from the blade's axis, mean",
+     [](FrameNetwork& n) { return chain_alignment(n.graph, n.run.walls, n.chains(), GapDirection::across); }},
+    {"chain_along_tip", "1", "|cos| between a force chain and the path of the blade's tip, mean",
+     [](FrameNetwork& n) { return chain_alignment(n.graph, n.run.walls, n.chains(), GapDirection::along); }},
     {"bridge_strength", "N", "weakest contact of the strongest path from blade to vessel",
      [](FrameNetwork& n) { return n.bridge().strength; }},
     {"largest_bridge_betweenness", "1", "largest betweenness of a particle on the shortest paths from blade to vessel",
-     [](FrameNetwork& n) {
-       const std::vector<double>& through = n.between();
-       return through.empty() ? unknown : *std::max_element(through.begin(), through.end());
-     }},
+     [](FrameNetwork& n) { return largest(n.between().particle); }, Cost::high},
     {"bridge_flow", "N", "maximum flow of repulsive force from blade to vessel", [](FrameNetwork& n) { return n.flow().value; }},
-    {"bridge_conductance", "N", "conductance from blade to vessel, a contact's being its repulsive force", of_graph<bridge_conductance>},
+    {"bridge_conductance", "N", "conductance from blade to vessel, a contact's being its repulsive force", of_graph<bridge_conductance>, Cost::high},
     {"contact_disjoint_load_paths", "1", "paths from blade to vessel that share no contact",
-     [](FrameNetwork& n) { return double(contact_disjoint_load_paths(n.graph)); }},
+     [](FrameNetwork& n) { return double(contact_disjoint_load_paths(n.graph)); }, Cost::high},
     {"particle_disjoint_load_paths", "1", "paths from blade to vessel that share no particle",
-     [](FrameNetwork& n) { return double(particle_disjoint_load_paths(n.graph)); }},
+     [](FrameNetwork& n) { return double(particle_disjoint_load_paths(n.graph)); }, Cost::high},
+});
+
+constexpr auto of_changes = std::to_array<ChangeMetric>({
+    {"contact_survival", "1", "share of the contacts of the frame before that still hold",
+     [](FrameNetwork& a, FrameNetwork& b) { return contact_survival(a.graph.snapshot(), b.graph.snapshot()); }},
+    {"contact_renewal", "1", "share of the contacts that were not there in the frame before",
+     [](FrameNetwork& a, FrameNetwork& b) { return contact_renewal(a.graph.snapshot(), b.graph.snapshot()); }},
+    {"bottleneck_of_parts", "N", "bottleneck distance of the persistence diagrams of parts",
+     [](FrameNetwork& a, FrameNetwork& b) { return bottleneck_distance(a.parts(), b.parts()); }, Cost::high},
+    {"bottleneck_of_loops", "N", "bottleneck distance of the persistence diagrams of loops that triangles do not fill",
+     [](FrameNetwork& a, FrameNetwork& b) { return bottleneck_distance(a.loops(), b.loops()); }, Cost::high},
+    {"wasserstein_of_parts", "N", "Wasserstein distance (q = 1) of the persistence diagrams of parts",
+     [](FrameNetwork& a, FrameNetwork& b) { return wasserstein_distance(a.parts(), b.parts()); }, Cost::high},
+    {"wasserstein_of_loops", "N", "Wasserstein distance (q = 1) of the persistence diagrams of loops that triangles do not fill",
+     [](FrameNetwork& a, FrameNetwork& b) { return wasserstein_distance(a.loops(), b.loops()); }, Cost::high},
 });
 
 constexpr auto of_each_particle = std::to_array<ParticleMetric>({
@@ -111,6 +195,15 @@ constexpr auto of_each_particle = std::to_array<ParticleMetric>({
      [](FrameNetwork& n) { return of_particles(n, [&](auto v) { return double(n.graph.degree(v)); }); }},
     {"wall_contacts", "1", "contacts with walls",
      [](FrameNetwork& n) { return of_particles(n, [&](auto v) { return double(n.graph.wall_contacts(v).size()); }); }},
+    {"compressive_force", "N", "sum of the repulsive normal forces, walls included", [](FrameNetwork& n) { return n.compressive(); }},
+    {"largest_contact_force", "N", "largest repulsive normal force, walls included",
+     [](FrameNetwork& n) { return compressive_forces(n.graph, CompressiveMeasure::max); }},
+    {"jammed", "1", "1 where the compressive force is above 20 N",
+     [](FrameNetwork& n) {
+       std::vector<double> is(n.graph.vertex_count(), 0.0);
+       for (const JammedParticle& j : n.jammed()) is[j.row] = 1;
+       return is;
+     }},
     {"component_size", "1", "particles of the component that it belongs to",
      [](FrameNetwork& n) { return of_particles(n, [&](auto v) { return double(n.components().size[n.components().label[v]]); }); }},
     {"rattler", "1", "1 where its contacts cannot hold it, with friction", [](FrameNetwork& n) { return as_values(n.loose()); }},
@@ -118,6 +211,21 @@ constexpr auto of_each_particle = std::to_array<ParticleMetric>({
     {"triangles", "1", "triangles of contacts that it is a corner of", [](FrameNetwork& n) { return as_values(n.corners()); }},
     {"clustering_coefficient", "1", "share of pairs of its partners that touch each other; none with fewer than two partners",
      [](FrameNetwork& n) { return clustering_coefficient(n.graph, n.corners()); }},
+    {"force_clustering", "1", "the same with the repulsive forces as weights (Barrat)", [](FrameNetwork& n) { return force_clustering(n.graph); }},
+    {"community", "1", "number of the community that it belongs to, the largest is 0",
+     [](FrameNetwork& n) { return as_values(n.groups().label); }, Cost::high},
+    {"community_size", "1", "particles of that community",
+     [](FrameNetwork& n) { return of_particles(n, [&](auto v) { return double(n.groups().size[n.groups().label[v]]); }); }, Cost::high},
+    {"betweenness", "1", "shortest paths between all other particles through it, each pair once, shared among equal ones",
+     [](FrameNetwork& n) { return betweenness(n.graph).particle; }, Cost::high},
+    {"cell_volume", "m^3", "volume of its power cell, bounded by the walls; none for an open one", [](FrameNetwork& n) { return n.cells(); }, Cost::high},
+    {"local_solid_fraction", "1", "its volume over that of its power cell; none for an open one",
+     [](FrameNetwork& n) { return local_solid_fraction(n.graph.snapshot(), n.cells()); }, Cost::high},
+    {"mean_stress_of_cell", "Pa", "third of the trace of its stress, per volume of its power cell; compression is negative",
+     [](FrameNetwork& n) {
+       const std::vector<double> fraction = local_solid_fraction(n.graph.snapshot(), n.cells());
+       return of_particles(n, [&](auto v) { return n.stress()[v].trace() / 3 * fraction[v]; });
+     }, Cost::high},
     {"mean_stress", "Pa", "third of the trace of its stress, per volume of the sphere; compression is negative",
      [](FrameNetwork& n) { return of_particles(n, [&](auto v) { return n.stress()[v].trace() / 3; }); }},
     {"largest_compression", "Pa", "most compressive principal stress, > 0; 0 where nothing compresses it",
@@ -132,7 +240,7 @@ constexpr auto of_each_particle = std::to_array<ParticleMetric>({
     {"articulation_point", "1", "1 where its component falls apart without it",
      [](FrameNetwork& n) { return as_values(n.biconnected().articulation_point); }},
     {"bridge_betweenness", "1", "shortest paths from blade to vessel through it, shared among equal ones",
-     [](FrameNetwork& n) { return n.between(); }},
+     [](FrameNetwork& n) { return n.between().particle; }, Cost::high},
     {"on_strongest_bridge", "1", "1 on the strongest path from blade to vessel",
      [](FrameNetwork& n) {
        std::vector<double> on(n.graph.vertex_count(), 0.0);
@@ -152,6 +260,21 @@ constexpr auto of_each_contact = std::to_array<ContactMetric>({
       }}},
     {{"cut_edge", "1", "1 where its component falls in two without it",
       [](FrameNetwork& n) { return as_values(n.biconnected().cut_edge); }}},
+    {{"tangential_force", "N", "size of the tangential force",
+      [](FrameNetwork& n) {
+        const ParticleContacts& pp = n.graph.snapshot().pp;
+        const bool known = present(pp.tangential_force, pp.size());
+        return of_contacts(n, [&](auto c) { return known ? pp.tangential_force[c].template cast<double>().norm() : unknown; });
+      }}},
+    {{"mobilisation", "1", "tangential force over friction times repulsive normal force", [](FrameNetwork& n) { return n.mobilised(); }}},
+    {{"age", "s", "time for which it has held",
+      [](FrameNetwork& n) { return or_unknown(contact_ages(n.graph.snapshot(), n.run.dt), n.graph.edge_count()); }}},
+    {{"bridge_betweenness", "1", "shortest paths from blade to vessel over it, shared among equal ones",
+      [](FrameNetwork& n) { return n.between().contact; }, Cost::high}},
+    {{"betweenness", "1", "shortest paths between all particles over it, each pair once, shared among equal ones",
+      [](FrameNetwork& n) { return betweenness(n.graph).contact; }, Cost::high}},
+    {{"force_betweenness", "1", "the same with paths that seek strong contacts: lengths 1/f",
+      [](FrameNetwork& n) { return betweenness(n.graph, inverse_forces(n.graph)).contact; }, Cost::high}},
     {{"in_smallest_cut", "1", "1 for a contact of the smallest cut between blade and vessel",
       [](FrameNetwork& n) {
         std::vector<double> cut(n.graph.edge_count(), 0.0);
@@ -164,6 +287,9 @@ constexpr auto of_each_contact = std::to_array<ContactMetric>({
 
 std::span<const Metric> metrics() {
   return of_frames;
+}
+std::span<const ChangeMetric> change_metrics() {
+  return of_changes;
 }
 std::span<const ParticleMetric> particle_metrics() {
   return of_each_particle;

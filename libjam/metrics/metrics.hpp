@@ -1,4 +1,5 @@
-// The tables of network metrics: one number per frame, per particle and per contact of two particles.
+// The tables of network metrics: one number per frame, per change from one frame to a later one, per particle and per contact of two
+// particles.
 #pragma once
 #include <span>
 #include <string_view>
@@ -8,19 +9,28 @@
 
 namespace jam {
 
-template <class Value>
+// What a metric takes on a frame of 35,000 particles, together with what it shares with others.
+enum class Cost {
+  low,  // up to a tenth of a second: taken unless others are asked for
+  high  // more, some of them minutes: asked for by name, or with all
+};
+
+template <class Value, class... Of>
 struct MetricRow {
   std::string_view name;  // as typed after --metric, snake_case
   std::string_view unit;  // "1" for pure numbers
   std::string_view doc;   // one line
-  Value (*value)(FrameNetwork&);
+  Value (*value)(Of...);
+  Cost cost = Cost::low;
 };
-using Metric = MetricRow<double>;
-using ParticleMetric = MetricRow<std::vector<double>>;  // [N] by the rows of the snapshot
-struct ContactMetric : MetricRow<std::vector<double>> {};  // [C] by the rows of Snapshot::pp
+using Metric = MetricRow<double, FrameNetwork&>;
+using ChangeMetric = MetricRow<double, FrameNetwork&, FrameNetwork&>;     // from the first to the second
+using ParticleMetric = MetricRow<std::vector<double>, FrameNetwork&>;     // [N] by the rows of the snapshot
+struct ContactMetric : MetricRow<std::vector<double>, FrameNetwork&> {};  // [C] by the rows of Snapshot::pp
 
 // All metrics, in the order in which they are printed.
 std::span<const Metric> metrics();
+std::span<const ChangeMetric> change_metrics();
 std::span<const ParticleMetric> particle_metrics();
 std::span<const ContactMetric> contact_metrics();
 

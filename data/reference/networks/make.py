@@ -1,23 +1,32 @@
 #!/usr/bin/python3
-"""Contact networks of real frames and random ones, and what networkx and numpy find in them.
+"""Contact networks of real frames and random ones, and what networkx, igraph, GUDHI, voro++, scipy and numpy find in them.
 
-    data/reference/networks/make.py RUN.h5      (apt-get install python3-networkx python3-h5py)
+    data/reference/networks/make.py RUN.h5
+    (apt-get install python3-networkx python3-igraph python3-gudhi python3-pot python3-scipy python3-h5py voro++)
 
 RUN.h5: of `jamscope simulate data/cases/ft4_quick.toml --until "1 ms"`, last frame. Writes beside itself
-  networks.csv   network, kind, ...: `grain` (a: id; x in `value`, y, z: m), `touch` (a, b: ids; value: normal force, N), `blade` and
+  networks.csv   network, kind, ...: `grain` (a: id; x in `value`, y, z, radius: m), `touch` (a, b: ids; value: normal force, N), `blade` and
                  `vessel` (a: id; value: normal force on it, N); floats with nine digits, which give back the same float32
-  metrics.csv    network, metric, value
+  metrics.csv    network, metric, value; of a change: network, metric, value for the change from the network before it
+  cells.csv      network, id, volume of the radical Voronoi cell in the box around all spheres of the network, m^3: as voro++ prints it
 The dumps of LAMMPS and LIGGGHTS are those in data/formats: last frame. LIGGGHTS lists no contacts with its vessel.
 """
 import csv
 import lzma
 import random
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
+import gudhi
+import gudhi.wasserstein
 import h5py
+import igraph
 import networkx
 import numpy
+import scipy.sparse.csgraph
+import scipy.spatial
 
 HERE = Path(__file__).resolve().parent
 FORMATS = HERE.parents[1] / "formats"
@@ -25,7 +34,7 @@ FORMATS = HERE.parents[1] / "formats"
 
 class Contacts:
     def __init__(self):
-        self.place, self.touch, self.blade, self.vessel = {}, {}, [], []
+        self.place, self.radius, self.touch, self.blade, self.vessel = {}, {}, {}, [], []
 
 
 def single(value):
@@ -39,8 +48,9 @@ def quick(path):
         of = lambda kind: slice(int(frames[f"{kind}_start"][-1]), int(frames[f"{kind}_start"][-1]) + int(frames[f"{kind}_count"][-1]))
         rows, pp, pw = of("particle"), of("pp"), of("pw")
         ids = particles["id"][rows]
-        for name, x in zip(ids, particles["position"][rows]):
+        for name, x, radius in zip(ids, particles["position"][rows], particles["radius"][rows]):
             c.place[int(name)] = tuple(map(float, x))
+            c.radius[int(name)] = float(radius)
         # The whole of the normal force, in double as the sum of two floats.
         force = lambda group, part: file[f"contacts/{group}/normal_force"][part].astype(float) + file[f"contacts/{group}/damping_force"][part]
         for (a, b), f in zip(file["contacts/pp/row"][pp], force("pp", pp)):
@@ -69,6 +79,7 @@ def last_table(name):
 def places(c, name):
     for row in last_table(name):
         c.place[int(row["id"])] = tuple(single(row[k]) for k in "xyz")
+        c.radius[int(row["id"])] = single(row["radius"])
 
 
 def lammps():
@@ -109,6 +120,7 @@ def geometric(seed):
     count, reach = 30, 0.25 + 0.004 * seed
     for name in range(count):
         c.place[7 * name + 1] = tuple(single(chance.random()) for _ in range(3))
+        c.radius[7 * name + 1] = single(reach / 2)
     names = list(c.place)
     for k, a in enumerate(names):
         for b in names[k + 1:]:
@@ -130,6 +142,112 @@ def conductance(loads):
     inverse = numpy.linalg.pinv(networkx.laplacian_matrix(loads, nodes, weight="capacity").toarray(), rcond=1e-14, hermitian=True)
     b, v = nodes.index("blade"), nodes.index("vessel")
     return 1 / (inverse[b, b] + inverse[v, v] - 2 * inverse[b, v])
+
+
+def diagrams(c):
+    """Persistence by force of the flag complex of the repulsive contacts, dimensions 0 and 1: (birth, death), death 0 for what stays."""
+    tree = gudhi.SimplexTree()
+    # GUDHI's filtrations ascend.
+    for (a, b), f in c.touch.items():
+        if f > 0:
+            for v in (a, b):
+                if not tree.find([v]) or tree.filtration([v]) > -f:
+                    tree.insert([v], filtration=-f)
+    for (a, b), f in c.touch.items():
+        if f > 0:
+            tree.insert([a, b], filtration=-f)
+    tree.expansion(2)
+    tree.compute_persistence(persistence_dim_max=True)
+    for dimension in (0, 1):
+        pairs = tree.persistence_intervals_in_dimension(dimension)
+        yield numpy.array([(-birth, 0 if numpy.isinf(death) else -death) for birth, death in pairs]).reshape(-1, 2)
+
+
+def rigidity(c):
+    """Rows and rank of the rigidity matrix, all contacts sticking, without walls."""
+    index = {name: k for k, name in enumerate(c.place)}
+    matrix = numpy.zeros((3 * len(c.touch), 6 * len(index)))
+    for k, (a, b) in enumerate(c.touch):
+        branch = numpy.subtract(c.place[b], c.place[a])
+        arm = {a: c.radius[a] / (c.radius[a] + c.radius[b]) * branch, b: -c.radius[b] / (c.radius[a] + c.radius[b]) * branch}
+        for name, sign in ((a, 1), (b, -1)):
+            x, y, z = arm[name] / c.radius[name]
+            matrix[3 * k:3 * k + 3, 6 * index[name]:6 * index[name] + 6] = sign * numpy.array(
+                [[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x], [0, 0, 1, y, -x, 0]])
+    return matrix.shape[0], numpy.linalg.matrix_rank(matrix, tol=1e-7)
+
+
+def gap_factor(c, graph, communities):
+    largest, factors = max(map(len, communities)), []
+    for members in communities:
+        hops = dict(networkx.all_pairs_shortest_path_length(graph.subgraph(members)))
+        pairs = [(a, b) for a in members for b in members if a < b]
+        x = [hops[a][b] for a, b in pairs]
+        if len(members) < 3 or min(x) == max(x):
+            continue
+        y = [numpy.linalg.norm(numpy.subtract(c.place[a], c.place[b])) for a, b in pairs]
+        factors.append(1 - numpy.corrcoef(x, y)[0, 1] * len(members) / largest)
+    return numpy.mean(factors)
+
+
+def hull_ratio(c, communities):
+    ratios = []
+    for members in communities:
+        if len(members) >= 4:
+            hull = scipy.spatial.ConvexHull([c.place[v] for v in members]).volume
+            ratios.append(hull / sum(4 / 3 * numpy.pi * c.radius[v] ** 3 for v in members))
+    return numpy.mean(ratios) if ratios else numpy.nan
+
+
+def metrics_of_paths(c, graph):
+    names = list(graph)
+    matrix = networkx.to_scipy_sparse_array(graph, nodelist=names, weight=None)
+    distance = scipy.sparse.csgraph.shortest_path(matrix, directed=False, unweighted=True)
+    apart = distance[~numpy.eye(len(names), dtype=bool)]
+    joined = apart[numpy.isfinite(apart)]
+    yield "path_efficiency", (1 / joined).sum() / len(apart)
+    yield "mean_path_length", joined.mean()
+    yield "longest_path_length", joined.max()
+    index = {name: k for k, name in enumerate(names)}
+    plain = igraph.Graph(len(names), [(index[a], index[b]) for a, b in c.touch])
+    yield "largest_betweenness", max(plain.betweenness(directed=False))
+    yield "largest_contact_betweenness", max(plain.edge_betweenness(directed=False))
+    # Lengths 1/f; contacts that do not push are not walked.
+    pushing = [((a, b), f) for (a, b), f in c.touch.items() if f > 0]
+    loads = igraph.Graph(len(names), [(index[a], index[b]) for (a, b), _ in pushing])
+    lengths = [1 / f for _, f in pushing]
+    yield "largest_force_betweenness", max(loads.betweenness(directed=False, weights=lengths))
+    yield "largest_contact_force_betweenness", max(loads.edge_betweenness(directed=False, weights=lengths))
+    weighted = scipy.sparse.csr_matrix((lengths, ([index[a] for (a, b), _ in pushing], [index[b] for (a, b), _ in pushing])),
+                                       shape=(len(names), len(names)))
+    distance = scipy.sparse.csgraph.dijkstra(weighted, directed=False)
+    apart = distance[~numpy.eye(len(names), dtype=bool)]
+    yield "force_efficiency", (1 / apart[numpy.isfinite(apart)]).sum() / len(apart)
+
+
+def modularity(c, mean):
+    """Best of ten of igraph's Leiden with the geographical null model."""
+    index = {name: k for k, name in enumerate(c.place)}
+    graph = igraph.Graph(len(index), [(index[a], index[b]) for a, b in c.touch])
+    weights = [max(f, 0) - mean for f in c.touch.values()]
+    random.seed(1)
+    best = 0
+    for _ in range(10):
+        found = graph.community_leiden(objective_function="CPM", weights=weights, resolution_parameter=0.0, n_iterations=-1).membership
+        best = max(best, sum(w for (a, b), w in zip(c.touch, weights) if found[index[a]] == found[index[b]]))
+    return best / sum(max(f, 0) for f in c.touch.values())
+
+
+def cells(c):
+    """Box around all spheres, and the volume that voro++ prints for each, in units of 1e-9 of its own input."""
+    low = [min(c.place[v][k] - c.radius[v] for v in c.place) for k in range(3)]
+    high = [max(c.place[v][k] + c.radius[v] for v in c.place) for k in range(3)]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "spheres"
+        path.write_text("".join(f"{v} {' '.join(repr(x) for x in c.place[v])} {c.radius[v]!r}\n" for v in c.place))
+        box = [repr(x) for pair in zip(low, high) for x in pair]
+        subprocess.run(["voro++", "-r", "-o", "-c", "%i %v", *box, path], check=True, capture_output=True)
+        return [line.split() for line in path.with_suffix(".vol").read_text().splitlines()]
 
 
 def metrics(c):
@@ -156,6 +274,22 @@ def metrics(c):
     through = networkx.betweenness_centrality_subset(graph, sorted({a for a, _ in c.blade}), sorted({a for a, _ in c.vessel}))
     yield "largest_bridge_betweenness", 2 * max(through.values())
     yield "mean_repulsive_force", mean
+    yield from metrics_of_paths(c, graph)
+    largest = graph.subgraph(max(parts, key=len))
+    yield "algebraic_connectivity", numpy.linalg.eigvalsh(networkx.laplacian_matrix(largest).toarray().astype(float))[1]
+    yield "modularity", modularity(c, mean)
+    yield "gap_factor_of_components", gap_factor(c, graph, parts)
+    yield "hull_ratio_of_components", hull_ratio(c, parts)
+    clustering = igraph.Graph.TupleList([(str(a), str(b), max(f, 0)) for (a, b), f in c.touch.items()], weights=True)
+    barrat = numpy.array(clustering.transitivity_local_undirected(weights="weight", mode="nan"))
+    yield "mean_force_clustering", barrat[numpy.isfinite(barrat)].mean()
+    for (name, of), pairs in zip((("parts", "parts"), ("loops", "loops")), diagrams(c)):
+        yield f"{name}_at_mean_force", numpy.sum((pairs[:, 0] >= mean) & (pairs[:, 1] < mean))
+        yield f"persistence_of_{of}", (pairs[:, 0] - pairs[:, 1]).sum() / mean
+    if n <= 300:
+        rows, rank = rigidity(c)
+        yield "zero_modes_without_walls", 6 * n - rank
+        yield "self_stresses_without_walls", rows - rank
     yield "strong_contact_share", sum(f > mean for f in repulsive.values()) / len(repulsive)
     for name, weight in (("fabric_anisotropy", lambda f: 1.0), ("force_fabric_anisotropy", lambda f: max(f, 0)),
                          ("strong_fabric_anisotropy", lambda f: float(f > mean)),
@@ -200,20 +334,37 @@ def metrics(c):
 def main():
     networks = {"quick": quick(sys.argv[1]), "lammps": lammps(), "liggghts": liggghts()}
     networks.update({f"geometric_{seed}": geometric(seed) for seed in range(50)})
-    with open(HERE / "networks.csv", "w", newline="") as out, open(HERE / "metrics.csv", "w", newline="") as found:
+    with open(HERE / "networks.csv", "w", newline="") as out, open(HERE / "metrics.csv", "w", newline="") as found, \
+         open(HERE / "cells.csv", "w", newline="") as volumes:
         rows, results = csv.writer(out, lineterminator="\n"), csv.writer(found, lineterminator="\n")
-        rows.writerow(["network", "kind", "a", "b", "value", "y", "z"])
+        cell_rows = csv.writer(volumes, lineterminator="\n")
+        rows.writerow(["network", "kind", "a", "b", "value", "y", "z", "radius"])
         results.writerow(["network", "metric", "value"])
+        cell_rows.writerow(["network", "id", "volume"])
+        before = None
         for name, c in networks.items():
             for a, x in sorted(c.place.items()):
-                rows.writerow([name, "grain", a, "", *(f"{v:.9g}" for v in x)])
+                rows.writerow([name, "grain", a, "", *(f"{v:.9g}" for v in x), f"{c.radius[a]:.9g}"])
             for (a, b), f in sorted(c.touch.items()):
-                rows.writerow([name, "touch", a, b, f"{f:.9g}", "", ""])
+                rows.writerow([name, "touch", a, b, f"{f:.9g}", "", "", ""])
             for role in ("blade", "vessel"):
                 for a, f in sorted(getattr(c, role)):
-                    rows.writerow([name, role, a, "", f"{f:.9g}", "", ""])
+                    rows.writerow([name, role, a, "", f"{f:.9g}", "", "", ""])
             for metric, value in metrics(c):
                 results.writerow([name, metric, repr(float(value))])
+            # Changes from one random network to the next: real diagrams are too large for POT.
+            if name.startswith("geometric"):
+                now = list(diagrams(c))
+                if before is not None:
+                    for k, of in enumerate(("parts", "loops")):
+                        # Births before deaths, as GUDHI has them.
+                        results.writerow([name, f"bottleneck_of_{of}", repr(gudhi.bottleneck_distance(before[k][:, ::-1], now[k][:, ::-1]))])
+                        cost = gudhi.wasserstein.wasserstein_distance(before[k][:, ::-1], now[k][:, ::-1], order=1, internal_p=numpy.inf)
+                        results.writerow([name, f"wasserstein_of_{of}", repr(float(cost))])
+                before = now
+            else:
+                for row in cells(c):
+                    cell_rows.writerow([name, *row])
 
 
 if __name__ == "__main__":

@@ -1,12 +1,15 @@
 // Small networks written by hand: grains by id, touches by id, walls by role. The rows, the order of the contacts and
 // everything else that snapshot.hpp asks for follow by themselves, so a test shows only its physics.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <map>
 #include <random>
+#include <string>
 #include <vector>
 
-#include "libjam/snapshot/snapshot.hpp"
+#include "libjam/graph/contact_graph.hpp"
 
 namespace jam::hand_made {
 
@@ -27,6 +30,8 @@ inline RunInfo hand_made_run() {
   describe(blade_wall, "blade", "mesh", WallRole::blade);
   describe(vessel_wall, "vessel", "cylinder", WallRole::vessel);
   describe(floor_wall, "floor", "plane", WallRole::other);
+  info.walls[vessel_wall].radius = 0.011;
+  info.walls[floor_wall].point = Vec3(0, 0, -0.004);
   info.gap = {.tip_radius = 0.010, .vessel_radius = 0.011, .z_low = -0.002, .z_high = 0.002};
   return info;
 }
@@ -107,6 +112,16 @@ inline Snapshot random_network(unsigned seed, unsigned particles, unsigned touch
     network.press(pressed, static_cast<HandMadeWall>(wall), static_cast<float>(below(60)) - 10.0f);
   }
   return network.snapshot();
+}
+
+// f(graph) on 50 networks of so many grains, from sparse to dense.
+template <class F>
+void for_random_networks(unsigned particles, F f) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const Snapshot snapshot = random_network(seed, particles, seed * particles / 12);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    f(ContactGraph(snapshot, hand_made_run().walls));
+  }
 }
 
 // The same network without any load: a frame between two jams.

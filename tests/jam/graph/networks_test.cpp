@@ -21,22 +21,12 @@ namespace jam {
 namespace {
 
 using hand_made::blade_wall;
+using hand_made::for_random_networks;
 using hand_made::hand_made_run;
 using hand_made::Network;
-using hand_made::random_network;
 using hand_made::vessel_wall;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-// f(graph) on networks of so many grains, from sparse to dense.
-template <class F>
-void for_random_networks(unsigned particles, F f) {
-  for (unsigned seed = 0; seed < 50; ++seed) {
-    const Snapshot snapshot = random_network(seed, particles, seed * particles / 12);
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    f(ContactGraph(snapshot, hand_made_run().walls));
-  }
-}
 
 // Takes away who has fewer than `least` holds in those left, until nothing changes.
 std::set<ContactGraph::Vertex> left_over(const ContactGraph& graph, std::size_t least, bool walls_hold) {
@@ -264,16 +254,16 @@ TEST(Betweenness, OfARowAndOfASquare) {
   row.touch(1, 2, 1).touch(2, 3, 1);
   const Snapshot in_row = row.snapshot();
   const ContactGraph line(in_row, hand_made_run().walls);
-  EXPECT_THAT(betweenness(line, three, three), ElementsAre(0, 2, 0));
-  EXPECT_THAT(betweenness(line, first, last), ElementsAre(0, 1, 0));
-  EXPECT_THAT(betweenness(line, first, first), ElementsAre(0, 0, 0));
+  EXPECT_THAT(betweenness(line, three, three).particle, ElementsAre(0, 2, 0));
+  EXPECT_THAT(betweenness(line, first, last).particle, ElementsAre(0, 1, 0));
+  EXPECT_THAT(betweenness(line, first, first).particle, ElementsAre(0, 0, 0));
   Network square;
   for (unsigned i = 0; i < 4; ++i) square.grain(i + 1, Vec3f(0.001f * float(i), 0, 0));
   square.touch(1, 2, 1).touch(2, 3, 1).touch(3, 4, 1).touch(1, 4, 1);
   const Snapshot in_square = square.snapshot();
   const ContactGraph loop(in_square, hand_made_run().walls);
-  EXPECT_THAT(betweenness(loop, four, four), ElementsAre(1, 1, 1, 1));
-  EXPECT_THAT(betweenness(loop, first, last), ElementsAre(0, 0.5, 0, 0.5));
+  EXPECT_THAT(betweenness(loop, four, four).particle, ElementsAre(1, 1, 1, 1));
+  EXPECT_THAT(betweenness(loop, first, last).particle, ElementsAre(0, 0.5, 0, 0.5));
 }
 
 // By its definition: with distances d and numbers of shortest paths n of all pairs, n_st(v) = n_sv n_vt where d_sv + d_vt = d_st.
@@ -301,7 +291,7 @@ TEST(Betweenness, IsTheShareOfShortestPaths) {
       if (!graph.wall_contacts(v, WallRole::blade).empty()) sources.push_back(v);
       if (!graph.wall_contacts(v, WallRole::vessel).empty()) targets.push_back(v);
     }
-    const std::vector<double> through = bridge_betweenness(graph);
+    const std::vector<double> through = bridge_betweenness(graph).particle;
     for (ContactGraph::Vertex v = 0; v < n; ++v) {
       double expected = 0;
       for (const auto s : sources)

@@ -10,6 +10,9 @@
 #include <set>
 #include <string>
 
+#include "libjam/metrics/chain_shape.hpp"
+#include "libjam/metrics/clustering_metrics.hpp"
+#include "libjam/metrics/contact_turnover.hpp"
 #include "tests/jam/graph/hand_made_network.hpp"
 
 namespace jam {
@@ -22,8 +25,9 @@ using hand_made::vessel_wall;
 
 template <class Row>
 auto value(const Row& metric, const Snapshot& snapshot) {
-  const ContactGraph graph(snapshot, hand_made_run().walls);
-  FrameNetwork network(graph);
+  const RunInfo run = hand_made_run();
+  const ContactGraph graph(snapshot, run.walls);
+  FrameNetwork network(graph, run);
   return metric.value(network);
 }
 double value(const char* name, const Snapshot& snapshot) {
@@ -156,6 +160,7 @@ TEST_P(EveryMetricTest, DoesNotChangeWhenTheSceneIsTurnedAndShifted) {
     Snapshot turned = snapshot;
     const Eigen::Quaternionf turn = Eigen::Quaternionf(0.3f, 0.5f * float(seed), -0.7f, 0.2f).normalized();
     for (Vec3f& x : turned.particles.position) x = turn * x + Vec3f(0.003f, -0.001f, 0.002f);
+    for (WallState& wall : turned.walls) wall.orientation = turn.cast<double>(), wall.position = Vec3(0.003, -0.001, 0.002);
     const double a = value(GetParam(), snapshot), b = value(GetParam(), turned);
     if (std::isnan(a)) {
       EXPECT_TRUE(std::isnan(b));
@@ -195,8 +200,8 @@ TEST(EveryParticleMetric, FollowsItsParticleThroughOtherIdsOrdersAndMotions) {
       ASSERT_EQ(values.size(), s.particles.size());
       for (std::size_t r = 0; r < ids.size(); ++r) {
         const auto there = std::find(other.particles.id.begin(), other.particles.id.end(), ids[r]) - other.particles.id.begin();
-        // Which of two equally strong bridges is told follows the rows.
-        if (metric.name != "on_strongest_bridge") expect_same(values[r], others[std::size_t(there)]);
+        // Which of two equally strong bridges is told, and which of two communities of one size comes first, follows the rows.
+        if (metric.name != "on_strongest_bridge" && metric.name != "community") expect_same(values[r], others[std::size_t(there)]);
         EXPECT_FALSE(std::isinf(values[r]));
       }
     }
@@ -237,6 +242,107 @@ TEST(ParticleMetrics, HaveTheirDefinitionsOnAHandMadeNetwork) {
   EXPECT_THAT(of("triangles"), ElementsAre(1, 1, 1, 0, 0, 0));
   EXPECT_TRUE(std::isnan(of("clustering_coefficient")[3]));
   EXPECT_EQ(of("clustering_coefficient")[0], 1);
+}
+
+TEST(EveryChangeMetric, IsTheSameForOtherIdsAndOrdersAndMotionsAndNoInfinity) {
+  const auto change = [](const ChangeMetric& metric, const Snapshot& before, const Snapshot& now) {
+    const RunInfo run = hand_made_run();
+    const ContactGraph first(before, run.walls), second(now, run.walls);
+    FrameNetwork a(first, run), b(second, run);
+    return metric.value(a, b);
+  };
+  for (const ChangeMetric& metric : change_metrics()) {
+    SCOPED_TRACE(metric.name);
+    EXPECT_FALSE(metric.unit.empty() || metric.doc.empty());
+    EXPECT_FALSE(std::isinf(change(metric, Snapshot{}, Snapshot{})));
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      const Snapshot before = hand_made::random_network(seed, 40, 15 * seed), now = hand_made::random_network(seed + 1, 40, 15 * seed);
+      const std::vector<ParticleId> ids = hand_made::shuffled_ids(seed, 40);
+      const double value = change(metric, before, now);
+      EXPECT_FALSE(std::isinf(value));
+      expect_same(value, change(metric, hand_made::relabelled(before, ids), hand_made::relabelled(now, ids)));
+      if (metric.unit == "N") {  // a distance
+        EXPECT_NEAR(change(metric, before, before), 0, 1e-12);
+      }
+    }
+  }
+}
+
+// Contacts 1-2, 2-3, 3-4 become 1-2, 2-3 (opened and closed again), 1-4: one of three survives, or two where births are not known.
+TEST(ChangeMetrics, OfContactsHaveTheirDefinitions) {
+  Snapshot before = Network().touch(1, 2, 1).touch(2, 3, 1).touch(3, 4, 1).snapshot();
+  Snapshot now = Network().touch(1, 2, 1).touch(2, 3, 1).touch(1, 4, 1).snapshot();
+  EXPECT_DOUBLE_EQ(contact_survival(before, now), 2.0 / 3);
+  before.pp.birth_step = {5, 6, 7};
+  now.pp.birth_step = {5, 12, 11};  // by rows: 1-2, 1-4, 2-3
+  EXPECT_DOUBLE_EQ(contact_survival(before, now), 1.0 / 3);
+  EXPECT_DOUBLE_EQ(contact_renewal(before, now), 2.0 / 3);
+  EXPECT_TRUE(std::isnan(contact_survival(Snapshot{}, now)));
+  EXPECT_TRUE(std::isnan(contact_renewal(now, Snapshot{})));
+  now.step = 21;
+  EXPECT_THAT(contact_ages(now, 0.5), ::testing::ElementsAre(8, 4.5, 5));
+  EXPECT_TRUE(contact_ages(now, 0).empty());
+}
+
+// 3 N across a contact of 10 N with friction 0.5 uses 3/5 of it. One that pulls uses none.
+TEST(Mobilisation, IsTheShareOfTheCoulombLimit) {
+  Snapshot s = Network().touch(1, 2, 10).touch(2, 3, -1).snapshot();
+  RunInfo run = hand_made_run();
+  const ContactGraph graph(s, run.walls);
+  EXPECT_TRUE(std::isnan(mobilisation(graph, run)[0]));  // no forces, no friction known
+  run.interactions = {{Interaction{.friction = 0.5}}};
+  s.pp.tangential_force = {Vec3f(0, 3, 0), Vec3f(1, 0, 0)};
+  EXPECT_DOUBLE_EQ(mobilisation(graph, run)[0], 0.6);
+  EXPECT_TRUE(std::isnan(mobilisation(graph, run)[1]));
+  EXPECT_DOUBLE_EQ(mean_mobilisation(mobilisation(graph, run)), 0.6);
+  // Of two materials, the friction of the pair.
+  run.interactions = {{{.friction = 0.1}, {.friction = 0.25}}, {{.friction = 0.25}, {.friction = 0.3}}};
+  EXPECT_TRUE(std::isnan(mobilisation(graph, run)[0]));
+  s.particles.material = {0, 1, 1};
+  EXPECT_DOUBLE_EQ(mobilisation(graph, run)[0], 1.2);
+}
+
+TEST(SlidingNetwork, IsWhatSlidingContactsJoin) {
+  Snapshot s = Network().touch(1, 2, 1).touch(2, 3, 1).touch(3, 4, 1).touch(4, 5, 1).snapshot();
+  s.pp.flags = {contact_sliding, contact_sliding, 0, contact_neck};
+  EXPECT_DOUBLE_EQ(value("sliding_share", s), 0.5);
+  EXPECT_DOUBLE_EQ(value("largest_sliding_cluster_share", s), 0.6);
+  EXPECT_DOUBLE_EQ(value("isostatic_coordination", s), 4 + 2.0 / 3 * 0.4);
+  s.pp.flags.assign(4, 0);
+  EXPECT_EQ(value("largest_sliding_cluster_share", s), 0);
+  EXPECT_EQ(value("isostatic_coordination", s), 4);
+}
+
+// Four grains at the corners of a square, chained around three of its sides, 1 mm beside the axis of the blade.
+TEST(ChainShape, OfARightAngledChain) {
+  const Snapshot s = Network()
+                         .grain(1, Vec3f(0.001f, 0, 0))
+                         .grain(2, Vec3f(0.002f, 0, 0))
+                         .grain(3, Vec3f(0.002f, 0, 0.001f))
+                         .grain(4, Vec3f(0.003f, 0, 0.001f))
+                         .snapshot();
+  const ContactGraph graph(s, hand_made_run().walls);
+  ForceChain chain;
+  chain.particles = {0, 1, 2, 3};
+  chain.links = 3;
+  chain.contour = 0.003;
+  chain.end_to_end = std::sqrt(5.0) * 1e-3;
+  EXPECT_NEAR(chain_straightness(graph, {chain}), std::sqrt(5.0) / 3, 1e-12);
+  EXPECT_NEAR(chain_bend(graph, {chain}), std::acos(0.0), 1e-6);
+  EXPECT_NEAR(chain_alignment(graph, hand_made_run().walls, {chain}, GapDirection::across), 2 / std::sqrt(5.0), 1e-6);
+  EXPECT_NEAR(chain_alignment(graph, hand_made_run().walls, {chain}, GapDirection::along), 0, 1e-6);
+  chain.links = 4;  // a ring
+  EXPECT_TRUE(std::isnan(chain_straightness(graph, {chain})));
+}
+
+// Two contacts of a grain, 3 and 1 N, closed to a triangle: (3 + 1)/(1 * 4) = 1; with a third partner outside, 2 N: 4/(2 * 6).
+TEST(ForceClustering, IsBarrats) {
+  const Snapshot s = Network().touch(1, 2, 3).touch(1, 3, 1).touch(2, 3, 7).touch(1, 4, 2).snapshot();
+  const ContactGraph graph(s, hand_made_run().walls);
+  const std::vector<double> found = force_clustering(graph);
+  EXPECT_DOUBLE_EQ(found[0], 4.0 / 12);
+  EXPECT_DOUBLE_EQ(found[1], 1);
+  EXPECT_TRUE(std::isnan(found[3]));
 }
 
 }  // namespace
