@@ -1,6 +1,7 @@
 #include "libjam/graph/particle_stress.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <numbers>
 
 #include "libjam/graph/contact_force.hpp"
@@ -11,6 +12,41 @@ namespace {
 
 Vec3 tangential_of(const std::vector<Vec3f>& forces, std::size_t contacts, std::size_t c) {
   return present(forces, contacts) ? Vec3(forces[c].cast<double>()) : Vec3(Vec3::Zero());
+}
+
+constexpr double same = 1e-9;  // of two principal stresses, against the most compressive
+
+// By iteration: always right.
+Load most_compressive_iterated(const Eigen::Matrix3d& stress) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(stress);  // ascending
+  const Vec3& value = principal.eigenvalues();
+  Load load;
+  if (!(value[0] < 0)) return load;
+  load.pressure = -value[0];
+  if (value[1] - value[0] > same * load.pressure) load.direction = principal.eigenvectors().col(0);
+  return load;
+}
+
+// In closed form (Smith, Commun. ACM 4, 168, 1961): with q = tr(S)/3, p = |S - q I|/sqrt(6) and r = det((S - q I)/p)/2 the smallest
+// eigenvalue is q + 2 p cos(acos(r)/3 + 2 pi/3). Its direction is at right angles to the rows of S less it. Good to rounding unless the two
+// smallest nearly agree, where r is 1.
+Load most_compressive(const Eigen::Matrix3d& stress) {
+  const double q = stress.trace() / 3;
+  const Eigen::Matrix3d deviator = stress - q * Eigen::Matrix3d::Identity();
+  const double p = std::sqrt(deviator.squaredNorm() / 6), r = deviator.determinant() / (2 * p * p * p);
+  if (!(r < 0.99)) return most_compressive_iterated(stress);
+  Load load;
+  const double angle = std::acos(std::max(r, -1.0)) / 3;
+  const double smallest = q + 2 * p * std::cos(angle + 2 * std::numbers::pi / 3), largest = q + 2 * p * std::cos(angle);
+  if (!(smallest < 0)) return load;
+  load.pressure = -smallest;
+  if (!(3 * q - largest - 2 * smallest > same * load.pressure)) return load;
+  const Eigen::Matrix3d rest = stress - smallest * Eigen::Matrix3d::Identity();
+  const Vec3 x = rest.row(0), y = rest.row(1), z = rest.row(2);
+  const Vec3 xy = x.cross(y), yz = y.cross(z), zx = z.cross(x);
+  const double a = xy.squaredNorm(), b = yz.squaredNorm(), c = zx.squaredNorm();
+  load.direction = a >= b && a >= c ? Vec3(xy / std::sqrt(a)) : b >= c ? Vec3(yz / std::sqrt(b)) : Vec3(zx / std::sqrt(c));
+  return load;
 }
 
 }  // namespace
@@ -48,16 +84,9 @@ std::vector<Eigen::Matrix3d> particle_stress(const ContactGraph& graph, std::spa
 }
 
 std::vector<Load> particle_loads(std::span<const Eigen::Matrix3d> stress) {
-  constexpr double same = 1e-9;
   std::vector<Load> load(stress.size());
-  for (std::size_t i = 0; i < stress.size(); ++i) {
-    if (stress[i].isZero(0)) continue;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(stress[i]);  // ascending
-    const Vec3& value = principal.eigenvalues();
-    if (!(value[0] < 0)) continue;
-    load[i].pressure = -value[0];
-    if (value[1] - value[0] > same * load[i].pressure) load[i].direction = principal.eigenvectors().col(0);
-  }
+  for (std::size_t i = 0; i < stress.size(); ++i)
+    if (!stress[i].isZero(0)) load[i] = most_compressive(stress[i]);
   return load;
 }
 

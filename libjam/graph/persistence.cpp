@@ -8,7 +8,6 @@
 #include <numeric>
 #include <span>
 
-#include "libjam/graph/contact_force.hpp"
 #include "libjam/graph/triangles.hpp"
 
 namespace jam {
@@ -17,27 +16,12 @@ namespace {
 using Vertex = ContactGraph::Vertex;
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-// The repulsive contacts from the strongest to the weakest. Among equal ones the order does not change the diagram.
+// The network built up contact by contact.
 struct Filtration {
-  struct Entry {
-    double force;
-    Vertex a, b;
-    std::uint32_t contact;
-  };
-  std::vector<Entry> contacts;
-  std::vector<std::uint32_t> rank;   // [C] place of each contact, none for those that do not push
   std::vector<std::uint8_t> closes;  // 1 for a contact that closes a loop with those before it
   PersistenceDiagram components;
 
-  explicit Filtration(const ContactGraph& graph) {
-    const ParticleContacts& pp = graph.snapshot().pp;
-    contacts.reserve(pp.size());
-    for (std::uint32_t c = 0; c < pp.size(); ++c)
-      if (const double force = repulsive_force(pp, c); force > 0) contacts.push_back({force, pp.row[c][0], pp.row[c][1], c});
-    std::stable_sort(contacts.begin(), contacts.end(), [](const Entry& x, const Entry& y) { return x.force > y.force; });
-    rank.assign(pp.size(), none);
-    for (std::uint32_t r = 0; r < contacts.size(); ++r) rank[contacts[r].contact] = r;
-
+  Filtration(const ContactGraph& graph, const RankedContacts& ranked) {
     // A particle comes in with the first of its contacts.
     std::vector<Vertex> parent(graph.vertex_count());
     std::iota(parent.begin(), parent.end(), 0u);
@@ -46,8 +30,8 @@ struct Filtration {
       while (parent[v] != v) v = parent[v] = parent[parent[v]];
       return v;
     };
-    closes.reserve(contacts.size());
-    for (const auto& [force, a, b, contact] : contacts) {
+    closes.reserve(ranked.size());
+    for (const auto& [force, a, b, contact] : ranked) {
       if (birth[a] == 0) birth[a] = force;
       if (birth[b] == 0) birth[b] = force;
       Vertex older = root(a), younger = root(b);
@@ -66,11 +50,13 @@ struct Filtration {
 // Ranks of the three contacts of a triangle, the last to enter first.
 using Triangle = std::array<std::uint32_t, 3>;
 
-std::vector<Triangle> triangles_of(const ContactGraph& graph, const Filtration& filtration) {
+std::vector<Triangle> triangles_of(const ContactGraph& graph, const RankedContacts& ranked) {
+  std::vector<std::uint32_t> rank(graph.edge_count(), none);
+  for (std::uint32_t r = 0; r < ranked.size(); ++r) rank[ranked[r].contact] = r;
   std::vector<Triangle> triangles;
   for_each_triangle(graph, [&](const ContactTriangle& t) {
     Triangle ranks;
-    for (std::size_t k = 0; k < 3; ++k) ranks[k] = filtration.rank[t.contact[k]];
+    for (std::size_t k = 0; k < 3; ++k) ranks[k] = rank[t.contact[k]];
     std::sort(ranks.begin(), ranks.end(), std::greater<>());
     if (ranks[0] != none) triangles.push_back(ranks);
   });
@@ -87,32 +73,31 @@ void add_to(std::vector<std::uint32_t>& column, std::span<const std::uint32_t> o
 
 }  // namespace
 
-PersistenceDiagram persistence_of_components(const ContactGraph& graph) {
-  return Filtration(graph).components;
+PersistenceDiagram persistence_of_components(const ContactGraph& graph, const RankedContacts& ranked) {
+  return Filtration(graph, ranked).components;
 }
 
-PersistenceDiagram persistence_of_loops(const ContactGraph& graph) {
-  const Filtration filtration(graph);
+PersistenceDiagram persistence_of_loops(const ContactGraph& graph, const RankedContacts& ranked) {
+  const Filtration filtration(graph, ranked);
   PersistenceDiagram loops;
-  for (std::size_t rank = 0; rank < filtration.contacts.size(); ++rank)
-    if (filtration.closes[rank]) loops.push_back({filtration.contacts[rank].force, 0});
+  for (std::size_t rank = 0; rank < ranked.size(); ++rank)
+    if (filtration.closes[rank]) loops.push_back({ranked[rank].force, 0});
   return loops;
 }
 
-PersistenceDiagram persistence_of_loops_not_filled(const ContactGraph& graph) {
-  const Filtration filtration(graph);
-  const auto& contacts = filtration.contacts;
-  const std::vector<Triangle> triangles = triangles_of(graph, filtration);
+PersistenceDiagram persistence_of_loops_not_filled(const ContactGraph& graph, const RankedContacts& ranked) {
+  const Filtration filtration(graph, ranked);
+  const std::vector<Triangle> triangles = triangles_of(graph, ranked);
   // For each contact the column whose last contact it is: a triangle as it came, or one that had to be reduced.
-  std::vector<std::uint32_t> triangle_at(contacts.size(), none), reduced_at(contacts.size(), none);
+  std::vector<std::uint32_t> triangle_at(ranked.size(), none), reduced_at(ranked.size(), none);
   std::vector<std::vector<std::uint32_t>> reduced;
-  std::vector<double> death(contacts.size(), 0.0);
+  std::vector<double> death(ranked.size(), 0.0);
   std::vector<std::uint32_t> column, scratch;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const std::uint32_t weakest = triangles[t][0];
     if (triangle_at[weakest] == none && reduced_at[weakest] == none) {
       triangle_at[weakest] = t;  // fills the loop in the moment in which its weakest contact closes it
-      death[weakest] = contacts[weakest].force;
+      death[weakest] = ranked[weakest].force;
       continue;
     }
     column.assign(triangles[t].begin(), triangles[t].end());
@@ -125,14 +110,14 @@ PersistenceDiagram persistence_of_loops_not_filled(const ContactGraph& graph) {
       } else {
         reduced_at[last] = std::uint32_t(reduced.size());
         reduced.push_back(column);
-        death[last] = contacts[weakest].force;
+        death[last] = ranked[weakest].force;
         break;
       }
     }
   }
   PersistenceDiagram loops;
-  for (std::size_t rank = 0; rank < contacts.size(); ++rank)
-    if (filtration.closes[rank] && contacts[rank].force > death[rank]) loops.push_back({contacts[rank].force, death[rank]});
+  for (std::size_t rank = 0; rank < ranked.size(); ++rank)
+    if (filtration.closes[rank] && ranked[rank].force > death[rank]) loops.push_back({ranked[rank].force, death[rank]});
   std::sort(loops.begin(), loops.end(), std::greater<>());
   return loops;
 }

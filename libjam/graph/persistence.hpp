@@ -15,7 +15,7 @@
 #pragma once
 #include <vector>
 
-#include "libjam/graph/contact_graph.hpp"
+#include "libjam/graph/ranked_contacts.hpp"
 
 namespace jam {
 
@@ -26,9 +26,10 @@ struct PersistencePair {
 };
 using PersistenceDiagram = std::vector<PersistencePair>;  // by birth, then death, descending
 
-PersistenceDiagram persistence_of_components(const ContactGraph& graph);
-PersistenceDiagram persistence_of_loops(const ContactGraph& graph);
-PersistenceDiagram persistence_of_loops_not_filled(const ContactGraph& graph);
+// `ranked` = contacts_by_force(graph).
+PersistenceDiagram persistence_of_components(const ContactGraph& graph, const RankedContacts& ranked);
+PersistenceDiagram persistence_of_loops(const ContactGraph& graph, const RankedContacts& ranked);
+PersistenceDiagram persistence_of_loops_not_filled(const ContactGraph& graph, const RankedContacts& ranked);
 
 // Betti number: how many of them are there with all contacts of force >= `force` in, for force > 0.
 std::size_t betti_number(const PersistenceDiagram& diagram, double force);

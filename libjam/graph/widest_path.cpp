@@ -41,34 +41,41 @@ class Sets {
   std::vector<std::uint8_t> ends_;
 };
 
-struct Link {
+// A contact with an end.
+struct EndContact {
   double force;
-  std::uint32_t a, b;  // b: a particle, or beyond all of them an end
+  ContactGraph::Vertex particle;
+  std::uint8_t end;
 };
 
 // N, at which blade and vessel come together.
-double strength(const ContactGraph& graph) {
-  const ParticleContacts& pp = graph.snapshot().pp;
-  const std::uint32_t n = std::uint32_t(graph.vertex_count());
-  std::vector<Link> links;
-  for (std::size_t c = 0; c < pp.size(); ++c)
-    if (const double force = repulsive_force(pp, c); force > 0) links.push_back({force, pp.row[c][0], pp.row[c][1]});
-  for (ContactGraph::Vertex v = 0; v < n; ++v) {
-    if (const double force = strongest(graph, v, WallRole::blade); force > 0) links.push_back({force, v, n + Sets::blade});
-    if (const double force = strongest(graph, v, WallRole::vessel); force > 0) links.push_back({force, v, n + Sets::vessel});
+double strength(const ContactGraph& graph, const RankedContacts& ranked) {
+  std::vector<EndContact> ends;
+  for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v) {
+    if (const double force = strongest(graph, v, WallRole::blade); force > 0) ends.push_back({force, v, Sets::blade});
+    if (const double force = strongest(graph, v, WallRole::vessel); force > 0) ends.push_back({force, v, Sets::vessel});
   }
-  std::sort(links.begin(), links.end(), [](const Link& x, const Link& y) { return x.force > y.force; });
-  Sets sets(n);
-  for (const Link& link : links)
-    if (link.b < n ? sets.join(link.a, link.b) : sets.reach(link.a, std::uint8_t(link.b - n))) return link.force;
+  std::sort(ends.begin(), ends.end(), [](const EndContact& x, const EndContact& y) { return x.force > y.force; });
+  Sets sets(graph.vertex_count());
+  auto contact = ranked.begin();
+  auto end = ends.begin();
+  while (end != ends.end() || contact != ranked.end()) {
+    if (end == ends.end() || (contact != ranked.end() && contact->force >= end->force)) {
+      if (sets.join(contact->a, contact->b)) return contact->force;
+      ++contact;
+    } else {
+      if (sets.reach(end->particle, end->end)) return end->force;
+      ++end;
+    }
+  }
   return 0;
 }
 
 }  // namespace
 
-WidestPath widest_path(const ContactGraph& graph) {
+WidestPath widest_path(const ContactGraph& graph, const RankedContacts& ranked) {
   WidestPath path;
-  path.strength = strength(graph);
+  path.strength = strength(graph, ranked);
   if (path.strength == 0) return path;
   // Breadth first over the contacts that are as strong, from the blade; partners come in ascending order.
   std::vector<ContactGraph::Vertex> before(graph.vertex_count(), nobody), front;

@@ -5,7 +5,7 @@
 #pragma once
 #include <vector>
 
-#include "libjam/graph/contact_graph.hpp"
+#include "libjam/graph/ranked_contacts.hpp"
 
 namespace jam {
 
@@ -13,6 +13,7 @@ struct WidestPath {
   double strength = 0;                          // N, normal force of its weakest contact; 0 where no path carries load
   std::vector<ContactGraph::Vertex> particles;  // from the blade to the vessel; of the shortest such, the one of smallest rows
 };
-WidestPath widest_path(const ContactGraph& graph);
+// `ranked` = contacts_by_force(graph).
+WidestPath widest_path(const ContactGraph& graph, const RankedContacts& ranked);
 
 }  // namespace jam

@@ -46,15 +46,16 @@ class FrameNetwork {
   const std::vector<Load>& loads() { return once(loads_, [&] { return particle_loads(stress()); }); }
   // Linear ones by the usual rules.
   const std::vector<ForceChain>& chains() { return once(chains_, [&] { return force_chains(graph, loads()); }); }
-  const WidestPath& bridge() { return once(bridge_, [&] { return widest_path(graph); }); }
+  const RankedContacts& ranked() { return once(ranked_, [&] { return contacts_by_force(graph); }); }
+  const WidestPath& bridge() { return once(bridge_, [&] { return widest_path(graph, ranked()); }); }
   const Betweenness& between() { return once(between_, [&] { return bridge_betweenness(graph); }); }
   const Biconnectivity& biconnected() { return once(biconnected_, [&] { return biconnectivity(graph); }); }
   const MaxFlow& flow() { return once(flow_, [&] { return max_force_flow(graph); }); }
   const PathLengths& paths() { return once(paths_, [&] { return path_lengths(graph); }); }
   const Communities& groups() { return once(groups_, [&] { return communities(graph); }); }
   const Rigidity& rigid() { return once(rigid_, [&] { return rigidity(graph); }); }
-  const PersistenceDiagram& parts() { return once(parts_, [&] { return persistence_of_components(graph); }); }
-  const PersistenceDiagram& loops() { return once(loops_, [&] { return persistence_of_loops_not_filled(graph); }); }
+  const PersistenceDiagram& parts() { return once(parts_, [&] { return persistence_of_components(graph, ranked()); }); }
+  const PersistenceDiagram& loops() { return once(loops_, [&] { return persistence_of_loops_not_filled(graph, ranked()); }); }
   const std::vector<double>& mobilised() { return once(mobilised_, [&] { return mobilisation(graph, run); }); }
   // m^3, of the power cells.
   const std::vector<double>& cells() { return once(cells_, [&] { return power_cell_volumes(graph.snapshot(), run.walls); }); }
@@ -81,6 +82,7 @@ class FrameNetwork {
   std::optional<std::vector<Eigen::Matrix3d>> stress_;
   std::optional<std::vector<Load>> loads_;
   std::optional<std::vector<ForceChain>> chains_;
+  std::optional<RankedContacts> ranked_;
   std::optional<WidestPath> bridge_;
   std::optional<Betweenness> between_;
   std::optional<Biconnectivity> biconnected_;

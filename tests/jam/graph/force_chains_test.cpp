@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <random>
 #include <set>
 
 #include "tests/jam/graph/hand_made_network.hpp"
@@ -30,6 +31,32 @@ std::vector<Load> loads(const ContactGraph& graph) {
 std::vector<ForceChain> chains(const Snapshot& s, const ChainRules& rules = {}) {
   const ContactGraph graph(s, hand_made_run().walls);
   return force_chains(graph, loads(graph), rules);
+}
+
+// Matrices made from their principal values and a turn. The direction of a value that others come near is known the less, the nearer
+// they come; where they agree there is none.
+TEST(ParticleLoads, AreTheSmallestPrincipalStressAndItsDirection) {
+  std::mt19937 random(1);
+  const auto uniform = [&] { return double(random()) / 4294967296.0 - 0.5; };
+  const Vec3 values[] = {{-3, 1, 2},   {-3, -2, -1},       {-3, 0, 0},         {-3, -3 * (1 - 1e-3), 5}, {-3, -3 * (1 - 1e-7), 5},
+                         {-3, -3, 5},  {-3, -1e-9, 1e-9},  {-1e6, 1, 2},       {2, 3, 4},                {-1, -1, -1},
+                         {-3, 8, 8},   {-2e-12, 0, 1e-12}, {-1, -0.97, -0.95}};
+  for (const Vec3& value : values)
+    for (int repeat = 0; repeat < 50; ++repeat) {
+      const double w = uniform(), x = uniform(), y = uniform(), z = uniform();
+      const Eigen::Matrix3d turn = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+      const Eigen::Matrix3d turned = turn * value.asDiagonal() * turn.transpose();
+      const std::vector<Eigen::Matrix3d> stress{(turned + turned.transpose()) / 2};
+      const Load load = particle_loads(stress)[0];
+      const double size = value.cwiseAbs().maxCoeff(), gap = value[1] - value[0];
+      EXPECT_NEAR(load.pressure, std::max(-value[0], 0.0), 1e-14 * size);
+      if (value[0] > 0 || gap == 0) {
+        EXPECT_EQ(load.direction.norm(), 0);
+      } else {
+        EXPECT_NEAR(std::abs(load.direction.dot(turn.col(0))), 1, 1e-15 + std::pow(2e-15 * size / gap, 2)) << value.transpose();
+        EXPECT_NEAR(load.direction.cross(turn.col(0)).norm(), 0, 1e-14 * size / gap);
+      }
+    }
 }
 
 // A grain between two others on the z axis: each contact gives -R F in zz.

@@ -177,15 +177,17 @@ bool bridged(const ContactGraph& graph, double force) {
 
 TEST(WidestPath, IsBridgedAtItsStrengthAndNotAbove) {
   const Snapshot apart = Network().touch(1, 2, 3).snapshot();
-  EXPECT_THAT(widest_path(ContactGraph(apart, hand_made_run().walls)).particles, IsEmpty());
+  const ContactGraph parted(apart, hand_made_run().walls);
+  EXPECT_THAT(widest_path(parted, contacts_by_force(parted)).particles, IsEmpty());
   // One grain between blade and vessel.
   const Snapshot pinched = Network().press(7, blade_wall, 30).press(7, vessel_wall, 20).snapshot();
-  const WidestPath one = widest_path(ContactGraph(pinched, hand_made_run().walls));
+  const ContactGraph held(pinched, hand_made_run().walls);
+  const WidestPath one = widest_path(held, contacts_by_force(held));
   EXPECT_EQ(one.strength, 20);
   EXPECT_THAT(one.particles, ElementsAre(0));
   int bridges = 0;
   for_random_networks(20, [&](const ContactGraph& graph) {
-    const WidestPath path = widest_path(graph);
+    const WidestPath path = widest_path(graph, contacts_by_force(graph));
     EXPECT_FALSE(bridged(graph, path.strength + 0.5));  // integer newtons
     if (path.strength == 0) {
       EXPECT_FALSE(bridged(graph, 0.5));

@@ -34,14 +34,14 @@ TEST(Persistence, OfASquareWithADiagonal) {
   //  4 -8- 3 ..
   const Snapshot s = Network().touch(1, 2, 9).touch(3, 4, 8).touch(2, 3, 5).touch(1, 4, 3).touch(1, 3, 2).touch(4, 5, -1).snapshot();
   const ContactGraph graph(s, hand_made_run().walls);
-  EXPECT_THAT(persistence_of_components(graph), ElementsAre(pair(9, 0), pair(8, 5)));
-  EXPECT_THAT(persistence_of_loops(graph), ElementsAre(pair(3, 0), pair(2, 0)));
-  EXPECT_THAT(persistence_of_loops_not_filled(graph), ElementsAre(pair(3, 2)));
-  EXPECT_EQ(betti_number(persistence_of_components(graph), 8), 2u);
-  EXPECT_EQ(betti_number(persistence_of_components(graph), 5), 1u);
-  EXPECT_EQ(betti_number(persistence_of_loops_not_filled(graph), 3), 1u);
-  EXPECT_EQ(betti_number(persistence_of_loops_not_filled(graph), 2), 0u);
-  EXPECT_EQ(total_persistence(persistence_of_components(graph)), 12);
+  EXPECT_THAT(persistence_of_components(graph, contacts_by_force(graph)), ElementsAre(pair(9, 0), pair(8, 5)));
+  EXPECT_THAT(persistence_of_loops(graph, contacts_by_force(graph)), ElementsAre(pair(3, 0), pair(2, 0)));
+  EXPECT_THAT(persistence_of_loops_not_filled(graph, contacts_by_force(graph)), ElementsAre(pair(3, 2)));
+  EXPECT_EQ(betti_number(persistence_of_components(graph, contacts_by_force(graph)), 8), 2u);
+  EXPECT_EQ(betti_number(persistence_of_components(graph, contacts_by_force(graph)), 5), 1u);
+  EXPECT_EQ(betti_number(persistence_of_loops_not_filled(graph, contacts_by_force(graph)), 3), 1u);
+  EXPECT_EQ(betti_number(persistence_of_loops_not_filled(graph, contacts_by_force(graph)), 2), 0u);
+  EXPECT_EQ(total_persistence(persistence_of_components(graph, contacts_by_force(graph))), 12);
 }
 
 // A simplex of the flag complex with the force at which it comes in.
@@ -108,9 +108,9 @@ TEST(Persistence, IsThatOfTheWholeBoundaryMatrix) {
   std::size_t filled = 0;
   for_random_networks(18, [&](const ContactGraph& graph) {
     const auto graph_only = reduced(graph, 1), flag = reduced(graph, 2);
-    EXPECT_EQ(persistence_of_components(graph), flag[0]);
-    EXPECT_EQ(persistence_of_loops(graph), graph_only[1]);
-    EXPECT_EQ(persistence_of_loops_not_filled(graph), flag[1]);
+    EXPECT_EQ(persistence_of_components(graph, contacts_by_force(graph)), flag[0]);
+    EXPECT_EQ(persistence_of_loops(graph, contacts_by_force(graph)), graph_only[1]);
+    EXPECT_EQ(persistence_of_loops_not_filled(graph, contacts_by_force(graph)), flag[1]);
     for (const PersistencePair& p : flag[1]) filled += p.death > 0;
   });
   EXPECT_GT(filled, 30u);  // loops that triangles fill later, not at once
