@@ -23,6 +23,28 @@ using hand_made::Network;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
+// 20,000 forces over 30 orders of magnitude, many equal, many told apart only by their damping part.
+TEST(RankedContacts, StandFromTheStrongestToTheWeakest) {
+  std::mt19937 random(3);
+  Snapshot s;
+  s.particles.id = {0, 1};
+  s.particles.position.resize(2, Vec3f::Zero());
+  s.particles.radius.resize(2, 1.0f);
+  for (int c = 0; c < 20000; ++c) {
+    s.pp.row.push_back({0, 1});
+    const float force = std::ldexp(float(random() % 64), int(random() % 100) - 50);
+    s.pp.normal_force.push_back(random() % 5 == 0 ? -force : force);
+    s.pp.damping_force.push_back(force * 1e-8f * float(random() % 3));
+  }
+  const RankedContacts ranked = contacts_by_force(ContactGraph(s, {}));
+  std::vector<std::pair<double, std::int64_t>> expected, found;
+  for (std::uint32_t c = 0; c < 20000; ++c)
+    if (const double force = repulsive_force(s.pp, c); force > 0) expected.emplace_back(-force, c);
+  std::sort(expected.begin(), expected.end());
+  for (const RankedContact& contact : ranked) found.emplace_back(-contact.force, contact.contact);
+  EXPECT_EQ(found, expected);
+}
+
 PersistencePair pair(double birth, double death) {
   return {birth, death};
 }
