@@ -13,6 +13,7 @@
 #include "libjam/jamming/compressive_force.hpp"
 #include "libjam/jamming/gap.hpp"
 #include "libjam/jamming/jam_clusters.hpp"
+#include "libjam/metrics/metrics.hpp"
 #include "libjam/metrics/coordination.hpp"
 #include "libjam/metrics/coordination_with_walls.hpp"
 #include "libjam/snapshot/validate.hpp"
@@ -110,16 +111,32 @@ std::string events_csv(const Analysis& analysis) {
 Pipeline::Pipeline(const RunInfo& info, const Criteria& criteria) : info_(info) {
   check_criteria(criteria, info);
   analysis_.criteria = criteria;
+  const auto record = [&](const Metric& metric) {
+    analysis_.metrics.push_back({std::string(metric.name), std::string(metric.unit), std::string(metric.doc), {}});
+  };
+  if (!criteria.metrics) {
+    for (const Metric& metric : metrics())
+      if (metric.cost == Cost::low) record(metric);
+    return;
+  }
+  for (const std::string& name : *criteria.metrics) {
+    const Metric* const metric = find_metric(name);
+    if (metric == nullptr) throw CriteriaError("criteria: metrics: \"" + name + "\" is none that is known");
+    record(*metric);
+  }
 }
 
 const FrameSummary& Pipeline::add(const Snapshot& snapshot) {
   check_frame(snapshot, info_, analysis_.frames);
   const ContactGraph graph(snapshot, info_.walls);
+  FrameNetwork network(graph, info_, analysis_.criteria);
   const auto frame = static_cast<std::uint32_t>(analysis_.frames.size());
 
-  const std::vector<double> compressive_force = compressive_forces(graph, analysis_.criteria.measure);
-  const std::vector<JammedParticle> jammed = jammed_particles(graph, compressive_force, info_, analysis_.criteria);
-  const std::vector<Cluster> clusters = jam_clusters(graph, jammed, analysis_.criteria, frame);
+  const std::vector<double>& compressive_force = network.compressive();
+  const std::vector<JammedParticle>& jammed = network.jammed();
+  std::vector<Cluster> clusters = network.clusters();
+  for (Cluster& cluster : clusters) cluster.frame = frame;
+  for (RecordedMetric& recorded : analysis_.metrics) recorded.values.push_back(find_metric(recorded.name)->value(network));
 
   if (!jammed.empty() && (jam_frames_.empty() || jam_frames_.back().jammed.empty())) ++events_so_far_;
   analysis_.frames.push_back(summarize(graph, compressive_force, jammed, clusters));

@@ -36,11 +36,18 @@ struct FrameSummary {
   std::uint32_t largest_bridge = 0;  // particles in the largest of them
 };
 
+// A metric of libjam/metrics/metrics.hpp for each frame.
+struct RecordedMetric {
+  std::string name, unit, doc;
+  std::vector<double> values;  // [F], NaN where it is not defined
+};
+
 struct Analysis {
   Criteria criteria;
   double observed_time = 0;      // s, frames * sampling interval
   double sampling_interval = 0;  // s, D; median distance of frames
   std::vector<FrameSummary> frames;
+  std::vector<RecordedMetric> metrics;
   std::vector<Cluster> clusters;  // by frame, then largest first, ties by smallest id
   std::vector<JamEvent> events;   // the global stream
   std::vector<Track> tracks;      // by start, then particle id
@@ -58,7 +65,7 @@ std::string events_csv(const Analysis& analysis);
 
 class Pipeline {
  public:
-  // Throws CriteriaError where an option is out of range, or info has no wall of role blade or none of role vessel.
+  // Throws CriteriaError where an option is out of range, a metric is not known, or info has no wall of role blade or none of role vessel.
   Pipeline(const RunInfo& info, const Criteria& criteria);
   // Frames must come in strictly increasing time and pass validate(); throws DataError otherwise, and
   // the pipeline is as before. Returns the new frame's summary.

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "libjam/errors.hpp"
+#include "libjam/metrics/metrics.hpp"
 #include "libjam/snapshot/hdf5.hpp"
 
 namespace jam {
@@ -12,7 +13,7 @@ namespace {
 
 constexpr const char* format_name = "jamscope-analysis";
 using Version = std::array<std::uint32_t, 2>;
-constexpr Version schema_version{1, 0};  // a larger second number only adds items
+constexpr Version schema_version{1, 1};  // a larger second number only adds items
 
 // The columns of each table are listed once, in a function that hands name, member, unit and doc to a visitor. Writing
 // and reading are two visitors, so they cannot disagree. To store one more member: add its line to the list.
@@ -278,6 +279,18 @@ std::vector<Row> read_with_members(const h5::File& file, const std::string& grou
   return rows;
 }
 
+// Those that this version knows, in its order.
+std::vector<RecordedMetric> read_metrics(const h5::File& file, std::size_t frames) {
+  std::vector<RecordedMetric> recorded;
+  for (const Metric& metric : metrics()) {
+    const std::string path = "/metrics/" + std::string(metric.name);
+    if (!file.exists(path)) continue;
+    recorded.push_back({std::string(metric.name), std::string(metric.unit), std::string(metric.doc), file.read<double>(path)});
+    if (recorded.back().values.size() != frames) file.fail(path, "expected " + std::to_string(frames) + " rows");
+  }
+  return recorded;
+}
+
 void write_flow_energy(h5::File& file, const FlowEnergy& flow) {
   columns_of(static_cast<FlowEnergy*>(nullptr),
              [&](const char* name, std::vector<double> FlowEnergy::*member, const char* unit, const char* doc) {
@@ -338,6 +351,8 @@ void write_results(const std::filesystem::path& path, const Analysis& analysis, 
     write_criteria(file, analysis.criteria);
     write_scalars(file, "/summary", analysis);
     write_table(file, "/frames", analysis.frames);
+    file.make_group("/metrics");
+    for (const RecordedMetric& metric : analysis.metrics) file.write("/metrics/" + metric.name, metric.values, metric.unit, metric.doc);
     write_with_members(file, "/clusters", analysis.clusters);
     write_with_members(file, "/events", analysis.events);
     write_tracks(file, analysis.tracks);
@@ -362,6 +377,7 @@ Analysis read_results(const std::filesystem::path& path) {
   analysis.criteria = read_criteria(file);
   read_scalars(file, "/summary", analysis);
   analysis.frames = read_table<FrameSummary>(file, "/frames");
+  if (file.exists("/metrics")) analysis.metrics = read_metrics(file, analysis.frames.size());
   analysis.clusters = read_with_members<Cluster>(file, "/clusters");
   analysis.events = read_with_members<JamEvent>(file, "/events");
   analysis.tracks = read_tracks(file);

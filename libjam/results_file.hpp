@@ -5,6 +5,7 @@
 //   /criteria          the thresholds, one row each
 //   /summary           scalars, one row each
 //   /frames            one row per frame
+//   /metrics           a dataset for each metric recorded, one row per frame
 //   /clusters          one row per cluster; members are rows [member_start, + member_count) of /clusters/members
 //   /events            the global stream; members as above
 //   /tracks            the per-particle stream; points are rows [point_start, + point_count) of /tracks/points/...

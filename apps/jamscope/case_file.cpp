@@ -14,6 +14,7 @@
 #include "libdem/case/check_case.hpp"
 #include "libdem/contact/laws.hpp"
 #include "libdem/errors.hpp"
+#include "libjam/metrics/metrics.hpp"
 
 namespace jamscope {
 namespace {
@@ -215,6 +216,7 @@ void read_analysis(Section analysis, Document& document, jam::Criteria& criteria
   analysis.number("bridge_contact_share", criteria.bridge_contact_share, optional);
   analysis.number("gap_margin", criteria.gap_margin, optional);
   analysis.quantities("survival_classes", dimension::time, criteria.survival_classes, optional);
+  if (std::vector<std::string> names; analysis.texts("metrics", names, optional)) criteria.metrics = names;
   analysis.finish();
 
   const auto refuse = [&](const char* key, const std::string& message) {
@@ -225,6 +227,12 @@ void read_analysis(Section analysis, Document& document, jam::Criteria& criteria
     refuse("bridge_contact_share", fmt::format("must lie in [0, 1], got {}", criteria.bridge_contact_share));
   if (!(criteria.gap_margin >= 0))
     refuse("gap_margin", fmt::format("must not be negative, got {}", criteria.gap_margin));
+  for (const std::string& name : criteria.metrics.value_or(std::vector<std::string>{})) {
+    if (jam::find_metric(name) != nullptr) continue;
+    std::vector<std::string> known;
+    for (const jam::Metric& metric : jam::metrics()) known.emplace_back(metric.name);
+    refuse("metrics", fmt::format("names '{}', which is no metric of frames{}", name, suggestion(name, known)));
+  }
   double bound = 0;
   for (const double next : criteria.survival_classes) {
     if (!(next > bound)) {

@@ -270,6 +270,21 @@ bool Section::quantities(std::string_view key, const Dimension& dimension, std::
   return true;
 }
 
+bool Section::texts(std::string_view key, std::vector<std::string>& out, Need need) {
+  const toml::node* node = find(key, need);
+  if (!node) return false;
+  const char* const wanted = "a list of texts in quotes";
+  const toml::array* list = node->as_array();
+  if (!list) return wrong_type(key, wanted, *node);
+  std::vector<std::string> values;
+  for (const toml::node& entry : *list) {
+    if (!entry.is_string()) return wrong_type(key, wanted, entry);
+    values.push_back(entry.as_string()->get());
+  }
+  out = std::move(values);
+  return true;
+}
+
 bool Section::number(std::string_view key, double& out, Need need) {
   const toml::node* node = find(key, need);
   if (!node) return false;

@@ -96,6 +96,7 @@ class Section {
   bool whole_number(std::string_view key, std::uint64_t& out, Need need = Need::required);
   bool truth(std::string_view key, bool& out, Need need = Need::required);
   bool text(std::string_view key, std::string& out, Need need = Need::required);
+  bool texts(std::string_view key, std::vector<std::string>& out, Need need = Need::required);
   // One of a few words.
   template <class Value>
   bool choice(std::string_view key, const std::vector<std::pair<std::string, Value>>& choices, Value& out,

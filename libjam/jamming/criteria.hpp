@@ -1,6 +1,8 @@
 // Every threshold and choice of the analysis in one place.
 #pragma once
 #include <array>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace jam {
@@ -22,6 +24,8 @@ struct Criteria {
   double gap_margin = 0.5;
   // Upper bounds of the survival-time classes, s; the last class is open (paper, Fig. 9 and Table 4).
   std::vector<double> survival_classes{0.01, 0.02, 0.03, 0.04, 0.05};
+  // Metrics recorded for each frame, by their names in libjam/metrics/metrics.cpp; nothing: those of low cost.
+  std::optional<std::vector<std::string>> metrics = std::nullopt;
 };
 
 }  // namespace jam

@@ -26,13 +26,15 @@ namespace jam {
 
 class FrameNetwork {
  public:
-  // Refers to both, which must outlive it. The run is the one that the graph's walls belong to.
-  FrameNetwork(const ContactGraph& contacts, const RunInfo& of_run) : graph(contacts), run(of_run) {}
-  FrameNetwork(ContactGraph&&, const RunInfo&) = delete;
-  FrameNetwork(const ContactGraph&, RunInfo&&) = delete;
+  // Refers to the graph and the run, which must outlive it. The run is the one that the graph's walls belong to.
+  FrameNetwork(const ContactGraph& contacts, const RunInfo& of_run, const Criteria& jam_criteria = {})
+      : graph(contacts), run(of_run), criteria(jam_criteria) {}
+  FrameNetwork(ContactGraph&&, const RunInfo&, const Criteria& = {}) = delete;
+  FrameNetwork(const ContactGraph&, RunInfo&&, const Criteria& = {}) = delete;
 
   const ContactGraph& graph;
   const RunInfo& run;
+  const Criteria criteria;
 
   const Components& components() { return once(components_, [&] { return connected_components(graph); }); }
   const std::vector<std::uint32_t>& cores() { return once(cores_, [&] { return core_numbers(graph); }); }
@@ -60,13 +62,12 @@ class FrameNetwork {
   // m^3, of the power cells.
   const std::vector<double>& cells() { return once(cells_, [&] { return power_cell_volumes(graph.snapshot(), run.walls); }); }
   const std::vector<double>& compressive() {
-    return once(compressive_, [&] { return compressive_forces(graph, Criteria{}.measure); });
+    return once(compressive_, [&] { return compressive_forces(graph, criteria.measure); });
   }
-  // By the usual criteria.
   const std::vector<JammedParticle>& jammed() {
-    return once(jammed_, [&] { return jammed_particles(graph, compressive(), run, Criteria{}); });
+    return once(jammed_, [&] { return jammed_particles(graph, compressive(), run, criteria); });
   }
-  const std::vector<Cluster>& clusters() { return once(clusters_, [&] { return jam_clusters(graph, jammed(), Criteria{}, 0); }); }
+  const std::vector<Cluster>& clusters() { return once(clusters_, [&] { return jam_clusters(graph, jammed(), criteria, 0); }); }
 
  private:
   template <class Value, class Find>

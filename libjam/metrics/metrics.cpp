@@ -83,7 +83,7 @@ constexpr auto of_frames = std::to_array<Metric>({
     {"mean_compressive_force", "N", "mean over the particles of the sum of their repulsive normal forces, walls included",
      [](FrameNetwork& n) { return mean(n.compressive()); }},
     {"largest_compressive_force", "N", "largest of them", [](FrameNetwork& n) { return largest(n.compressive()); }},
-    {"jammed_particles", "1", "particles whose compressive force is above 20 N", [](FrameNetwork& n) { return double(n.jammed().size()); }},
+    {"jammed_particles", "1", "particles whose compressive force is above the jam force (20 N)", [](FrameNetwork& n) { return double(n.jammed().size()); }},
     {"bridging_clusters", "1", "clusters of jammed particles loaded by blade and vessel",
      [](FrameNetwork& n) {
        return double(std::count_if(n.clusters().begin(), n.clusters().end(), [](const Cluster& c) { return c.bridges; }));
@@ -198,7 +198,7 @@ constexpr auto of_each_particle = std::to_array<ParticleMetric>({
     {"compressive_force", "N", "sum of the repulsive normal forces, walls included", [](FrameNetwork& n) { return n.compressive(); }},
     {"largest_contact_force", "N", "largest repulsive normal force, walls included",
      [](FrameNetwork& n) { return compressive_forces(n.graph, CompressiveMeasure::max); }},
-    {"jammed", "1", "1 where the compressive force is above 20 N",
+    {"jammed", "1", "1 where the compressive force is above the jam force (20 N)",
      [](FrameNetwork& n) {
        std::vector<double> is(n.graph.vertex_count(), 0.0);
        for (const JammedParticle& j : n.jammed()) is[j.row] = 1;

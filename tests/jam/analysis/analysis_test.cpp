@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libjam/errors.hpp"
+#include "libjam/metrics/metrics.hpp"
 #include "libjam/results_file.hpp"
 #include "tests/jam/graph/hand_made_network.hpp"
 
@@ -109,6 +110,24 @@ TEST(PipelineTest, SummarizesEachFrame) {
   EXPECT_EQ(a.frames[7].jammed, 1u);
   EXPECT_EQ(a.frames[7].jammed_in_gap, 0u);
   EXPECT_EQ(a.frames[7].bridges, 0u);
+}
+
+TEST(PipelineTest, RecordsTheMetricsAskedForAndThoseOfLowCostOtherwise) {
+  const auto frames = story();
+  std::size_t low = 0;
+  for (const Metric& metric : metrics()) low += metric.cost == Cost::low;
+  EXPECT_EQ(analyze(frames).metrics.size(), low);
+  Criteria criteria;
+  criteria.metrics = {"bridge_conductance", "coordination"};
+  Pipeline pipeline(hand_made_run(), criteria);
+  for (const Snapshot& frame : frames) pipeline.add(frame);
+  const Analysis a = pipeline.finish({});
+  ASSERT_EQ(a.metrics.size(), 2u);
+  EXPECT_EQ(a.metrics[0].name, "bridge_conductance");
+  EXPECT_EQ(a.metrics[0].unit, "N");
+  for (std::size_t k = 0; k < frames.size(); ++k) EXPECT_EQ(a.metrics[1].values.at(k), a.frames[k].coordination);
+  criteria.metrics = {"no_such_metric"};
+  EXPECT_THROW(Pipeline(hand_made_run(), criteria), CriteriaError);
 }
 
 TEST(PipelineTest, CountsEventsWhileTheRunGoesOnAndCanBeFinishedAtAnyTime) {

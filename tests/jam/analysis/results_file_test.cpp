@@ -54,6 +54,15 @@ bool same(double a, double b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
+void expect_same_metrics(const Analysis& a, const Analysis& b) {
+  ASSERT_EQ(a.metrics.size(), b.metrics.size());
+  for (std::size_t k = 0; k < a.metrics.size(); ++k) {
+    EXPECT_EQ(a.metrics[k].name, b.metrics[k].name);
+    EXPECT_EQ(a.metrics[k].unit, b.metrics[k].unit);
+    EXPECT_TRUE(std::equal(a.metrics[k].values.begin(), a.metrics[k].values.end(), b.metrics[k].values.begin(), b.metrics[k].values.end(), same));
+  }
+}
+
 void expect_same_event(const JamEvent& a, const JamEvent& b) {
   EXPECT_EQ(a.first_frame, b.first_frame);
   EXPECT_EQ(a.last_frame, b.last_frame);
@@ -87,6 +96,7 @@ void expect_same(const Analysis& a, const Analysis& b) {
   EXPECT_EQ(a.jammed_histogram, b.jammed_histogram);
   EXPECT_EQ(a.notes, b.notes);
 
+  expect_same_metrics(a, b);
   ASSERT_EQ(a.frames.size(), b.frames.size());
   for (std::size_t k = 0; k < a.frames.size(); ++k) {
     EXPECT_EQ(a.frames[k].time, b.frames[k].time);
