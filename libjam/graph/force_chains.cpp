@@ -101,12 +101,14 @@ bool pressed_by(const ContactGraph& graph, Vertex v, WallRole role) {
 std::vector<ForceChain> force_chains(const ContactGraph& graph, const std::vector<Load>& load, const ChainRules& rules) {
   const std::vector<std::uint8_t> above = loaded(load, rules.level), link = find_links(graph, load, above, rules);
   const Components components = connected_components(graph, above, link);
-  std::vector<std::vector<Vertex>> members(components.size.size());
+  // Largest first, so those that are long enough come first.
+  const auto end = std::partition_point(components.size.begin(), components.size.end(), [&](std::uint32_t s) { return s >= rules.least; });
+  std::vector<std::vector<Vertex>> members(std::size_t(end - components.size.begin()));
   for (Vertex v = 0; v < graph.vertex_count(); ++v)
-    if (components.label[v] != Components::none) members[components.label[v]].push_back(v);
+    if (components.label[v] < members.size()) members[components.label[v]].push_back(v);
 
   std::vector<ForceChain> chains;
-  for (std::size_t k = 0; k < members.size() && members[k].size() >= rules.least; ++k) {  // largest first
+  for (std::size_t k = 0; k < members.size(); ++k) {
     ForceChain chain;
     chain.particles = rules.branching ? members[k] : in_line(graph, link, members[k]);
     for (const Vertex v : chain.particles) {

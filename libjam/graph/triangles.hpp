@@ -18,22 +18,22 @@ struct ContactTriangle {
 // f(triangle) for each, once: from its contact of the two smallest rows, of both of whom the third is a later partner.
 template <class F>
 void for_each_triangle(const ContactGraph& graph, F f) {
-  const auto later = [](std::span<const ContactGraph::Neighbor> neighbors, ContactGraph::Vertex v) {
-    return std::upper_bound(neighbors.begin(), neighbors.end(), v,
-                            [](ContactGraph::Vertex a, const ContactGraph::Neighbor& b) { return a < b.vertex; });
-  };
-  for (std::uint32_t c = 0; c < graph.edge_count(); ++c) {
-    const auto [u, v] = graph.snapshot().pp.row[c];
-    const auto of_u = graph.neighbors(u), of_v = graph.neighbors(v);
-    auto a = later(of_u, v), b = later(of_v, v);
-    while (a != of_u.end() && b != of_v.end()) {
-      if (a->vertex == b->vertex) {
-        f(ContactTriangle{{u, v, a->vertex}, {c, a->contact, b->contact}});
-        ++a, ++b;
-      } else if (a->vertex < b->vertex) {
-        ++a;
-      } else {
-        ++b;
+  using Neighbor = ContactGraph::Neighbor;
+  std::vector<const Neighbor*> later(graph.vertex_count());  // the first partner of larger row
+  for (ContactGraph::Vertex v = 0; v < later.size(); ++v) {
+    const auto all = graph.neighbors(v);
+    later[v] = std::partition_point(all.data(), all.data() + all.size(), [v](const Neighbor& n) { return n.vertex < v; });
+  }
+  for (ContactGraph::Vertex u = 0; u < later.size(); ++u) {
+    const Neighbor* const end_of_u = graph.neighbors(u).data() + graph.degree(u);
+    for (const Neighbor* second = later[u]; second != end_of_u; ++second) {
+      const ContactGraph::Vertex v = second->vertex;
+      const Neighbor *a = second + 1, *b = later[v], *const end_of_v = graph.neighbors(v).data() + graph.degree(v);
+      while (a != end_of_u && b != end_of_v) {
+        if (a->vertex == b->vertex) f(ContactTriangle{{u, v, a->vertex}, {second->contact, a->contact, b->contact}});
+        const bool a_next = a->vertex <= b->vertex, b_next = b->vertex <= a->vertex;
+        a += a_next;
+        b += b_next;
       }
     }
   }

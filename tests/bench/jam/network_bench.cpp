@@ -149,7 +149,7 @@ void standard_set(benchmark::State& state) {
   graph();
   for (auto _ : state) {
     state.PauseTiming();
-    Pipeline pipeline(input().run, Criteria{});
+    Pipeline pipeline(input().run, Criteria{.metrics = std::vector<std::string>{}});
     state.ResumeTiming();
     const ContactGraph fresh(input().snapshot, input().run.walls);
     FrameNetwork n(fresh, input().run);
