@@ -1,6 +1,8 @@
 #include "libjam/graph/particle_stress.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -27,26 +29,48 @@ Load most_compressive_iterated(const Eigen::Matrix3d& stress) {
   return load;
 }
 
-// In closed form (Smith, Commun. ACM 4, 168, 1961): with q = tr(S)/3, p = |S - q I|/sqrt(6) and r = det((S - q I)/p)/2 the smallest
-// eigenvalue is q + 2 p cos(acos(r)/3 + 2 pi/3). Its direction is at right angles to the rows of S less it. Good to rounding unless the two
-// smallest nearly agree, where r is 1.
-Load most_compressive(const Eigen::Matrix3d& stress) {
-  const double q = stress.trace() / 3;
-  const Eigen::Matrix3d deviator = stress - q * Eigen::Matrix3d::Identity();
-  const double p = std::sqrt(deviator.squaredNorm() / 6), r = deviator.determinant() / (2 * p * p * p);
-  if (!(r < 0.99)) return most_compressive_iterated(stress);
-  Load load;
-  const double angle = std::acos(std::max(r, -1.0)) / 3;
-  const double smallest = q + 2 * p * std::cos(angle + 2 * std::numbers::pi / 3), largest = q + 2 * p * std::cos(angle);
-  if (!(smallest < 0)) return load;
-  load.pressure = -smallest;
-  if (!(3 * q - largest - 2 * smallest > same * load.pressure)) return load;
-  const Eigen::Matrix3d rest = stress - smallest * Eigen::Matrix3d::Identity();
-  const Vec3 x = rest.row(0), y = rest.row(1), z = rest.row(2);
-  const Vec3 xy = x.cross(y), yz = y.cross(z), zx = z.cross(x);
-  const double a = xy.squaredNorm(), b = yz.squaredNorm(), c = zx.squaredNorm();
-  load.direction = a >= b && a >= c ? Vec3(xy / std::sqrt(a)) : b >= c ? Vec3(yz / std::sqrt(b)) : Vec3(zx / std::sqrt(c));
-  return load;
+// Eight at a time. With q = tr(S)/3, p = |S - q I|/sqrt(6) and r = det((S - q I)/p)/2 the eigenvalues are q + p t with the roots of
+// t^3 - 3 t - 2 r (Smith, Commun. ACM 4, 168, 1961); the smallest root is in [-2, -1], where Newton's steps from below go straight to it. Its
+// direction is at right angles to the rows of S less it. Good to rounding unless the two smallest nearly agree, where r is 1.
+constexpr Eigen::Index lanes = 8;
+using Lanes = Eigen::Array<double, lanes, 1>;
+
+void most_compressive(const Eigen::Matrix3d* stress, Load* load) {
+  Lanes xx, yy, zz, xy, xz, yz;
+  for (Eigen::Index k = 0; k < lanes; ++k) {
+    const Eigen::Matrix3d& s = stress[k];
+    xx[k] = s(0, 0), yy[k] = s(1, 1), zz[k] = s(2, 2), xy[k] = s(0, 1), xz[k] = s(0, 2), yz[k] = s(1, 2);
+  }
+  const Lanes q = (xx + yy + zz) / 3, a = xx - q, b = yy - q, c = zz - q;
+  const Lanes p = ((a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6).sqrt();
+  const Lanes half_determinant = (a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)) / 2;
+  const Lanes r = (half_determinant / (p * p * p)).max(-1);
+  const Lanes root = ((1 - r.min(1)) / 2).sqrt();
+  Lanes t = -1 - root * (1.1547 - 0.1547 * root);  // within 0.004
+  for (int step = 0; step < 4; ++step) t -= (t * (t * t - 3) - 2 * r) / (3 * (t * t - 1));
+  const Lanes smallest = q + p * t;
+  // The roots add up to 0: the middle one is -t/2 - sqrt(3 - 3/4 t^2).
+  const Lanes gap = p * (-1.5 * t - (3 - 0.75 * t * t).max(0).sqrt());
+
+  const Lanes dx = xx - smallest, dy = yy - smallest, dz = zz - smallest;
+  // Cross products of the rows (dx, xy, xz), (xy, dy, yz), (xz, yz, dz): entries of the adjugate, of which they are columns.
+  const Lanes nxx = dy * dz - yz * yz, nyy = dx * dz - xz * xz, nzz = dx * dy - xy * xy;
+  const Lanes nxy = xz * yz - xy * dz, nxz = xy * yz - xz * dy, nyz = xy * xz - dx * yz;
+  for (Eigen::Index k = 0; k < lanes; ++k) {
+    if (stress[k].isZero(0)) continue;
+    if (!(r[k] < 0.99)) {
+      load[k] = most_compressive_iterated(stress[k]);
+      continue;
+    }
+    if (!(smallest[k] < 0)) continue;
+    load[k].pressure = -smallest[k];
+    if (!(gap[k] > same * load[k].pressure)) continue;
+    // The adjugate is n (x) n times the product of the two gaps: its column of largest diagonal is the most accurate.
+    const Vec3 column = nxx[k] >= nyy[k] && nxx[k] >= nzz[k] ? Vec3(nxx[k], nxy[k], nxz[k])
+                        : nyy[k] >= nzz[k]                   ? Vec3(nxy[k], nyy[k], nyz[k])
+                                                             : Vec3(nxz[k], nyz[k], nzz[k]);
+    load[k].direction = column.normalized();
+  }
 }
 
 }  // namespace
@@ -85,8 +109,15 @@ std::vector<Eigen::Matrix3d> particle_stress(const ContactGraph& graph, std::spa
 
 std::vector<Load> particle_loads(std::span<const Eigen::Matrix3d> stress) {
   std::vector<Load> load(stress.size());
-  for (std::size_t i = 0; i < stress.size(); ++i)
-    if (!stress[i].isZero(0)) load[i] = most_compressive(stress[i]);
+  const std::size_t whole = stress.size() - stress.size() % std::size_t(lanes);
+  for (std::size_t i = 0; i < whole; i += std::size_t(lanes)) most_compressive(&stress[i], &load[i]);
+  if (whole == stress.size()) return load;
+  std::array<Eigen::Matrix3d, std::size_t(lanes)> rest;
+  std::array<Load, std::size_t(lanes)> rest_load;
+  rest.fill(Eigen::Matrix3d::Zero());
+  std::copy(stress.begin() + std::ptrdiff_t(whole), stress.end(), rest.begin());
+  most_compressive(rest.data(), rest_load.data());
+  std::copy_n(rest_load.begin(), stress.size() - whole, load.begin() + std::ptrdiff_t(whole));
   return load;
 }
 
