@@ -1,67 +1,54 @@
 #include "libjam/graph/components.hpp"
 
 #include <algorithm>
-#include <boost/graph/connected_components.hpp>
-#include <boost/graph/filtered_graph.hpp>
+#include <boost/pending/disjoint_sets.hpp>
 #include <numeric>
-
-#include "libjam/graph/boost_adaptor.hpp"
 
 namespace jam {
 namespace {
 
-struct KeepVertex {
-  const std::uint8_t* keep = nullptr;
-  bool operator()(ContactGraph::Vertex v) const { return keep[v] != 0; }
-};
+// keep_vertex(v) and keep_contact(c) say what takes part.
+template <class KeepVertex, class KeepContact>
+Components find_components(const ContactGraph& graph, KeepVertex keep_vertex, KeepContact keep_contact) {
+  const std::uint32_t n = std::uint32_t(graph.vertex_count());
+  std::vector<std::uint32_t> parent(n), depth(n, 0);
+  std::iota(parent.begin(), parent.end(), 0u);
+  boost::disjoint_sets<std::uint32_t*, std::uint32_t*> sets(depth.data(), parent.data());
+  const auto& rows = graph.snapshot().pp.row;
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    if (const auto [a, b] = rows[c]; keep_contact(c) && keep_vertex(a) && keep_vertex(b)) sets.union_set(a, b);
 
-struct KeepEdge {
-  const std::uint8_t* keep = nullptr;
-  bool operator()(const ContactEdge& e) const { return keep[e.contact] != 0; }
-};
-
-template <class Graph>
-Components by_rule(const Graph& graph, std::size_t vertices) {
-  std::vector<std::uint32_t> found(vertices, Components::none);
-  const auto index = get(boost::vertex_index, graph);
-  const std::size_t count = boost::connected_components(graph, boost::make_iterator_property_map(found.begin(), index));
-
-  std::vector<std::uint32_t> size(count, 0), smallest(count, Components::none);
-  for (std::uint32_t v = 0; v < vertices; ++v) {
-    if (found[v] == Components::none) continue;
-    ++size[found[v]];
-    smallest[found[v]] = std::min(smallest[found[v]], v);
+  std::vector<std::uint32_t> size(n, 0), root(n), order, rank(n);
+  for (std::uint32_t v = 0; v < n; ++v) {
+    if (!keep_vertex(v)) continue;
+    root[v] = sets.find_set(v);
+    if (size[root[v]]++ == 0) order.push_back(root[v]);
   }
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return size[a] != size[b] ? size[a] > size[b] : smallest[a] < smallest[b];
-  });
+  // They come by their smallest row already; a stable sort leaves ties so.
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return size[a] > size[b]; });
 
   Components result;
-  result.label.assign(vertices, Components::none);
-  std::vector<std::uint32_t> rank(count);
-  for (std::uint32_t k = 0; k < count; ++k) {
+  result.label.assign(n, Components::none);
+  for (std::uint32_t k = 0; k < order.size(); ++k) {
     rank[order[k]] = k;
     result.size.push_back(size[order[k]]);
   }
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if (found[v] != Components::none) result.label[v] = rank[found[v]];
-  }
+  for (std::uint32_t v = 0; v < n; ++v)
+    if (keep_vertex(v)) result.label[v] = rank[root[v]];
   return result;
 }
 
 }  // namespace
 
 Components connected_components(const ContactGraph& graph) {
-  return by_rule(graph, graph.vertex_count());
+  const auto all = [](std::size_t) { return true; };
+  return find_components(graph, all, all);
 }
 
 Components connected_components(const ContactGraph& graph, std::span<const std::uint8_t> keep_vertex,
                                 std::span<const std::uint8_t> keep_contact) {
-  const boost::filtered_graph<ContactGraph, KeepEdge, KeepVertex> part(graph, KeepEdge{keep_contact.data()},
-                                                                       KeepVertex{keep_vertex.data()});
-  return by_rule(part, graph.vertex_count());
+  return find_components(
+      graph, [&](std::size_t v) { return keep_vertex[v] != 0; }, [&](std::size_t c) { return keep_contact[c] != 0; });
 }
 
 }  // namespace jam

@@ -20,16 +20,19 @@ namespace jam {
 template <class Weight>
 Eigen::Matrix3d fabric_tensor(const ContactGraph& graph, Weight weight) {
   const Snapshot& s = graph.snapshot();
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  double total = 0;
+  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0, total = 0;
   for (std::size_t c = 0; c < s.pp.size(); ++c) {
     const double w = weight(c);
     const Vec3 branch = s.particles.position[s.pp.row[c][1]].cast<double>() - s.particles.position[s.pp.row[c][0]].cast<double>();
     const double square = branch.squaredNorm();
     if (!(w > 0) || !(square > 0)) continue;
-    sum += (w / square) * (branch * branch.transpose());
+    const Vec3 weighted = w / square * branch;
+    xx += weighted.x() * branch.x(), yy += weighted.y() * branch.y(), zz += weighted.z() * branch.z();
+    xy += weighted.x() * branch.y(), xz += weighted.x() * branch.z(), yz += weighted.y() * branch.z();
     total += w;
   }
+  Eigen::Matrix3d sum;
+  sum << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   return sum / (total > 0 ? total : std::numeric_limits<double>::quiet_NaN());
 }
 
