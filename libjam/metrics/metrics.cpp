@@ -100,7 +100,7 @@ constexpr auto of_frames = std::to_array<Metric>({
     {"sliding_share", "1", "share of particle contacts at their friction limit", of_graph<sliding_share>},
     {"largest_sliding_cluster_share", "1", "share of particles in the largest cluster joined by sliding contacts",
      of_graph<largest_sliding_cluster_share>},
-    {"mean_mobilisation", "1", "tangential force over friction times repulsive force, mean of the contacts that push",
+    {"mean_mobilisation", "1", "tangential force over the friction limit, mean of the contacts that have one",
      [](FrameNetwork& n) { return mean_mobilisation(n.mobilised()); }},
     {"mean_contact_age", "s", "mean time for which the contacts have held",
      [](FrameNetwork& n) { return mean(contact_ages(n.graph.snapshot(), n.run.dt)); }},
@@ -266,7 +266,7 @@ constexpr auto of_each_contact = std::to_array<ContactMetric>({
         const bool known = present(pp.tangential_force, pp.size());
         return of_contacts(n, [&](auto c) { return known ? pp.tangential_force[c].template cast<double>().norm() : unknown; });
       }}},
-    {{"mobilisation", "1", "tangential force over friction times repulsive normal force", [](FrameNetwork& n) { return n.mobilised(); }}},
+    {{"mobilisation", "1", "tangential force over the friction limit, that of JKR with adhesion", [](FrameNetwork& n) { return n.mobilised(); }}},
     {{"age", "s", "time for which it has held",
       [](FrameNetwork& n) { return or_unknown(contact_ages(n.graph.snapshot(), n.run.dt), n.graph.edge_count()); }}},
     {{"bridge_betweenness", "1", "shortest paths from blade to vessel over it, shared among equal ones",

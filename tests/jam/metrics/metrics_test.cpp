@@ -284,8 +284,8 @@ TEST(ChangeMetrics, OfContactsHaveTheirDefinitions) {
   EXPECT_TRUE(contact_ages(now, 0).empty());
 }
 
-// 3 N across a contact of 10 N with friction 0.5 uses 3/5 of it. One that pulls uses none.
-TEST(Mobilisation, IsTheShareOfTheCoulombLimit) {
+// 3 N across a contact of 10 N with friction 0.5 uses 3/5 of it. One that pulls without adhesion has no limit.
+TEST(Mobilisation, IsTheShareOfTheFrictionLimit) {
   Snapshot s = Network().touch(1, 2, 10).touch(2, 3, -1).snapshot();
   RunInfo run = hand_made_run();
   const ContactGraph graph(s, run.walls);
@@ -300,6 +300,14 @@ TEST(Mobilisation, IsTheShareOfTheCoulombLimit) {
   EXPECT_TRUE(std::isnan(mobilisation(graph, run)[0]));
   s.particles.material = {0, 1, 1};
   EXPECT_DOUBLE_EQ(mobilisation(graph, run)[0], 1.2);
+  // With adhesion at pull-off, F = -F_c, the repulsive part is F_c; at F = 8 F_c it is 16 F_c.
+  EXPECT_DOUBLE_EQ(repulsive_part(-2, 2), 2);
+  EXPECT_DOUBLE_EQ(repulsive_part(16, 2), 32);
+  // JKR, Johnson's closed form: with 4 E* a^3/(3 R*) = P, F = P - 2 sqrt(F_c P).
+  for (const double part : {0.3, 1.0, 7.0, 1e4}) EXPECT_NEAR(repulsive_part(part - 2 * std::sqrt(0.3 * part), 0.3), part, 1e-12 * part);
+  run.interactions = {{Interaction{.friction = 0.5, .work_of_adhesion = 2 / (1.5 * 3.14159265358979 * 0.25e-3)}}};  // F_c = 2 N
+  s.pp.normal_force[1] = -2;
+  EXPECT_NEAR(mobilisation(graph, run)[1], 1 / (0.5 * 2), 1e-3);  // a root of the rounding of the radii
 }
 
 TEST(SlidingNetwork, IsWhatSlidingContactsJoin) {
