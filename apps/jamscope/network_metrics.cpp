@@ -44,12 +44,14 @@ class Table {
  public:
   // `columns` as (name in JSON, heading in CSV); but for the time, the first `whole` of them hold whole numbers.
   Table(TableFormat format, std::size_t whole, std::vector<std::pair<std::string, std::string>> columns)
-      : format_(format), whole_(whole), columns_(std::move(columns)) {
+      : format_(format), whole_(whole), columns_(std::move(columns)), undefined_(columns_.size(), 0) {
     if (format_ == TableFormat::json) return;
     for (std::size_t k = 0; k < columns_.size(); ++k) fmt::print("{}{}", k == 0 ? "" : ",", columns_[k].second);
     fmt::print("\n");
   }
   void row(std::span<const double> values) {
+    ++count_;
+    for (std::size_t k = 0; k < values.size(); ++k) undefined_[k] += std::isnan(values[k]);
     if (format_ == TableFormat::csv) {
       for (std::size_t k = 0; k < values.size(); ++k) fmt::print("{}{}", k == 0 ? "" : ",", values[k]);
       fmt::print("\n");
@@ -71,11 +73,16 @@ class Table {
   void finish() const {
     if (format_ == TableFormat::json) fmt::print("{}\n", rows_.dump(2));
   }
+  // For each column in how many rows it is not a number, and how many rows there are.
+  const std::vector<std::size_t>& undefined() const { return undefined_; }
+  std::size_t rows() const { return count_; }
 
  private:
   TableFormat format_;
   std::size_t whole_;
   std::vector<std::pair<std::string, std::string>> columns_;
+  std::vector<std::size_t> undefined_;
+  std::size_t count_ = 0;
   nlohmann::ordered_json rows_ = nlohmann::ordered_json::array();
 };
 
@@ -85,6 +92,15 @@ std::vector<std::pair<std::string, std::string>> columns(const std::vector<std::
   for (const std::string& id : ids) all.emplace_back(id, id);
   for (const Row& metric : metrics) all.emplace_back(metric.name, fmt::format("{} [{}]", metric.name, metric.unit));
   return all;
+}
+
+// Says of which rows a metric has no value, and why.
+template <class Row>
+void note_undefined(const MetricsOptions& options, const Table& table, std::size_t first_column, const std::vector<Row>& metrics) {
+  Console console(stderr, LogFormat::text, options.quiet);
+  for (std::size_t k = 0; k < metrics.size(); ++k)
+    if (const std::size_t count = table.undefined()[first_column + k]; count > 0)
+      console.note(fmt::format("{} has no value in {} of {} rows: {}", metrics[k].name, count, table.rows(), metrics[k].undefined));
 }
 
 // The network of a frame, which refers to it.
@@ -140,6 +156,7 @@ void print_metrics(const MetricsOptions& options, const jam::SnapshotSource& sou
     for (const jam::Metric& metric : metrics) row.push_back(metric.value(frame.network));
     return {row};
   });
+  note_undefined(options, table, 2, metrics);
 }
 
 void print_changes(const MetricsOptions& options, const jam::SnapshotSource& source, const std::vector<jam::ChangeMetric>& metrics) {
@@ -151,6 +168,7 @@ void print_changes(const MetricsOptions& options, const jam::SnapshotSource& sou
     for (const jam::ChangeMetric& metric : metrics) row.push_back(metric.value(first.network, second.network));
     return {row};
   });
+  note_undefined(options, table, 2, metrics);
 }
 
 // One row for each of `count(snapshot)`, with `ids(snapshot, row)` before its metrics.
@@ -170,6 +188,7 @@ void print_parts(const MetricsOptions& options, const jam::SnapshotSource& sourc
     }
     return rows;
   });
+  note_undefined(options, table, 2 + id_names.size(), metrics);
 }
 
 template <class Row>

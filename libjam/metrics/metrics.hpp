@@ -20,8 +20,9 @@ struct MetricRow {
   std::string_view name;  // as typed after --metric, snake_case
   std::string_view unit;  // "1" for pure numbers
   std::string_view doc;   // one line
-  Value (*value)(Of...);
+  Value (*value)(Of...);  // NaN where it is not defined
   Cost cost = Cost::low;
+  std::string_view undefined = {};  // when that is; empty: never
 };
 using Metric = MetricRow<double, FrameNetwork&>;
 using ChangeMetric = MetricRow<double, FrameNetwork&, FrameNetwork&>;     // from the first to the second

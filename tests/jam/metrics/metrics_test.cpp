@@ -172,7 +172,9 @@ TEST_P(EveryMetricTest, DoesNotChangeWhenTheSceneIsTurnedAndShifted) {
 
 TEST_P(EveryMetricTest, GivesNoInfinityForFramesWithoutParticlesOrContacts) {
   for (const Snapshot& snapshot : {Snapshot{}, Network().grain(1).snapshot(), Network().grain(1).grain(2).snapshot()}) {
-    EXPECT_FALSE(std::isinf(value(GetParam(), snapshot)));
+    const double found = value(GetParam(), snapshot);
+    EXPECT_FALSE(std::isinf(found));
+    EXPECT_TRUE(!std::isnan(found) || !GetParam().undefined.empty()) << "does not say when it is not defined";
   }
 }
 
@@ -203,6 +205,7 @@ TEST(EveryParticleMetric, FollowsItsParticleThroughOtherIdsOrdersAndMotions) {
         // Which of two equally strong bridges is told, and which of two communities of one size comes first, follows the rows.
         if (metric.name != "on_strongest_bridge" && metric.name != "community") expect_same(values[r], others[std::size_t(there)]);
         EXPECT_FALSE(std::isinf(values[r]));
+        EXPECT_TRUE(!std::isnan(values[r]) || !metric.undefined.empty());
       }
     }
   }
@@ -222,7 +225,10 @@ TEST(EveryContactMetric, FollowsItsContactThroughOtherIdsAndOrders) {
       ASSERT_EQ(values.size(), s.pp.size());
       for (std::size_t c = 0; c < other.pp.size(); ++c)
         found[{other.particles.id[other.pp.row[c][0]], other.particles.id[other.pp.row[c][1]]}] = others[c];
-      for (std::size_t c = 0; c < s.pp.size(); ++c) expect_same(values[c], found.at({ids[s.pp.row[c][0]], ids[s.pp.row[c][1]]}));
+      for (std::size_t c = 0; c < s.pp.size(); ++c) {
+        expect_same(values[c], found.at({ids[s.pp.row[c][0]], ids[s.pp.row[c][1]]}));
+        EXPECT_TRUE(!std::isnan(values[c]) || !metric.undefined.empty());
+      }
     }
   }
 }
