@@ -22,15 +22,11 @@
 namespace jam {
 namespace {
 
-void check_frame(const Snapshot& snapshot, const RunInfo& info, const std::vector<FrameSummary>& before) {
-  const std::string place = "frame " + std::to_string(before.size());
-  validate(snapshot, info, place);
-  if (!before.empty() && snapshot.time <= before.back().time) {
-    std::ostringstream problem;
-    problem << place << ": time " << snapshot.time << " s follows " << before.back().time
-            << " s, expected increasing times";
-    throw DataError(problem.str());
-  }
+void check_time(double time, const std::vector<FrameSummary>& before) {
+  if (before.empty() || time > before.back().time) return;
+  std::ostringstream problem;
+  problem << "frame " << before.size() << ": time " << time << " s follows " << before.back().time << " s, expected increasing times";
+  throw DataError(problem.str());
 }
 
 FrameSummary summarize(const ContactGraph& graph, const std::vector<double>& compressive_force,
@@ -126,28 +122,34 @@ Pipeline::Pipeline(const RunInfo& info, const Criteria& criteria) : info_(info) 
   }
 }
 
-const FrameSummary& Pipeline::add(const Snapshot& snapshot) {
-  check_frame(snapshot, info_, analysis_.frames);
+ExaminedFrame Pipeline::examine(const Snapshot& snapshot, std::size_t frame) const {
+  validate(snapshot, info_, "frame " + std::to_string(frame));
   const ContactGraph graph(snapshot, info_.walls);
   FrameNetwork network(graph, info_, analysis_.criteria);
-  const auto frame = static_cast<std::uint32_t>(analysis_.frames.size());
+  ExaminedFrame found;
+  found.summary = summarize(graph, network.compressive(), network.jammed(), network.clusters());
+  found.clusters = network.clusters();
+  for (Cluster& cluster : found.clusters) cluster.frame = static_cast<std::uint32_t>(frame);
+  found.jams = jam_frame(snapshot, network.jammed(), network.clusters());
+  for (const RecordedMetric& recorded : analysis_.metrics) found.metrics.push_back(find_metric(recorded.name)->value(network));
+  found.power = info_.wall_loads_known ? power_from_wall_loads(snapshot, info_.walls) : power_from_wall_contacts(snapshot, info_.walls);
+  found.blade_moves = any_blade_moves(snapshot, info_.walls);
+  found.recovered_contacts = recovered(snapshot.pw);
+  found.tangential_forces_missing = !present(snapshot.pw.tangential_force, snapshot.pw.size());
+  return found;
+}
 
-  const std::vector<double>& compressive_force = network.compressive();
-  const std::vector<JammedParticle>& jammed = network.jammed();
-  std::vector<Cluster> clusters = network.clusters();
-  for (Cluster& cluster : clusters) cluster.frame = frame;
-  for (RecordedMetric& recorded : analysis_.metrics) recorded.values.push_back(find_metric(recorded.name)->value(network));
-
-  if (!jammed.empty() && (jam_frames_.empty() || jam_frames_.back().jammed.empty())) ++events_so_far_;
-  analysis_.frames.push_back(summarize(graph, compressive_force, jammed, clusters));
-  jam_frames_.push_back(jam_frame(snapshot, jammed, clusters));
-  analysis_.clusters.insert(analysis_.clusters.end(), clusters.begin(), clusters.end());
-
-  frame_power_.push_back(info_.wall_loads_known ? power_from_wall_loads(snapshot, info_.walls)
-                                                : power_from_wall_contacts(snapshot, info_.walls));
-  blade_moved_ = blade_moved_ || any_blade_moves(snapshot, info_.walls);
-  recovered_contacts_ += recovered(snapshot.pw);
-  tangential_forces_missing_ = tangential_forces_missing_ || !present(snapshot.pw.tangential_force, snapshot.pw.size());
+const FrameSummary& Pipeline::add(ExaminedFrame frame) {
+  check_time(frame.summary.time, analysis_.frames);
+  if (!frame.jams.jammed.empty() && (jam_frames_.empty() || jam_frames_.back().jammed.empty())) ++events_so_far_;
+  analysis_.frames.push_back(frame.summary);
+  for (std::size_t k = 0; k < frame.metrics.size(); ++k) analysis_.metrics[k].values.push_back(frame.metrics[k]);
+  jam_frames_.push_back(std::move(frame.jams));
+  analysis_.clusters.insert(analysis_.clusters.end(), frame.clusters.begin(), frame.clusters.end());
+  frame_power_.push_back(frame.power);
+  blade_moved_ = blade_moved_ || frame.blade_moves;
+  recovered_contacts_ += frame.recovered_contacts;
+  tangential_forces_missing_ = tangential_forces_missing_ || frame.tangential_forces_missing;
   return analysis_.frames.back();
 }
 

@@ -63,13 +63,28 @@ struct Analysis {
 // The events of an analysis as a table; see libjam/events/events_csv.hpp.
 std::string events_csv(const Analysis& analysis);
 
+// All that the analysis keeps of one frame.
+struct ExaminedFrame {
+  FrameSummary summary;
+  std::vector<Cluster> clusters;
+  JamFrame jams;
+  std::vector<double> metrics;  // in the order of Analysis::metrics
+  double power = 0;             // W of the blades, from wall loads where known, else from contacts; NaN where neither
+  bool blade_moves = false, tangential_forces_missing = false;
+  std::size_t recovered_contacts = 0;
+};
+
 class Pipeline {
  public:
   // Throws CriteriaError where an option is out of range, a metric is not known, or info has no wall of role blade or none of role vessel.
   Pipeline(const RunInfo& info, const Criteria& criteria);
   // Frames must come in strictly increasing time and pass validate(); throws DataError otherwise, and
   // the pipeline is as before. Returns the new frame's summary.
-  const FrameSummary& add(const Snapshot& snapshot);
+  const FrameSummary& add(const Snapshot& snapshot) { return add(examine(snapshot, frames())); }
+  // The two halves of it: frames may be examined in any order and by several threads at once, and are then added in order. `frame` counts
+  // from 0; examine() throws DataError where the snapshot does not pass validate().
+  ExaminedFrame examine(const Snapshot& snapshot, std::size_t frame) const;
+  const FrameSummary& add(ExaminedFrame frame);
   std::size_t frames() const { return analysis_.frames.size(); }
   // Global events in the frames so far, the open one included. Frames that may be missing split events only in
   // finish().
@@ -81,7 +96,7 @@ class Pipeline {
   RunInfo info_;
   Analysis analysis_;
   std::vector<JamFrame> jam_frames_;
-  std::vector<double> frame_power_;  // W, per frame, from wall loads where known, else from contacts; NaN where neither
+  std::vector<double> frame_power_;  // ExaminedFrame::power of each
   std::size_t events_so_far_ = 0;
   std::size_t recovered_contacts_ = 0;
   bool blade_moved_ = false, tangential_forces_missing_ = false;

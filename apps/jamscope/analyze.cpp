@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/frames_in_flight.hpp"
 #include "apps/jamscope/outputs.hpp"
 #include "libjam/errors.hpp"
 
@@ -51,16 +52,19 @@ int analyze(const AnalyzeOptions& options) {
   progress.stage = "analyze";
   progress.unit = "frames";
   progress.total = static_cast<double>(source.frames);
-  for (std::size_t frame = 0; frame < source.frames; ++frame) {
+  const auto examine = [&](std::size_t frame, const jam::Snapshot*, const jam::Snapshot& snapshot) {
+    return pipeline.examine(snapshot, frame);
+  };
+  for_frames_in_flight(source, 0, source.frames, options.threads, false, examine, [&](jam::ExaminedFrame frame) {
     if (stop_requested()) throw UsageError("interrupted: nothing was written");
-    const jam::FrameSummary& summary = pipeline.add(source.read(frame));
-    progress.done = static_cast<double>(frame + 1);
+    const jam::FrameSummary& summary = pipeline.add(std::move(frame));
+    progress.done = static_cast<double>(pipeline.frames());
     progress.contacts = summary.particle_contacts + summary.wall_contacts;
     progress.largest_force = summary.largest_compressive_force;
     progress.jammed = summary.jammed;
     progress.events = pipeline.events_so_far();
     console.progress(progress);
-  }
+  });
   console.finished(progress);
 
   const jam::Analysis analysis = pipeline.finish(source.series);

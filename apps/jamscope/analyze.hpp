@@ -15,6 +15,7 @@ struct AnalyzeOptions {
   std::string criteria;                // criteria file, or empty
   std::vector<std::string> overrides;  // of criteria, "key=value"
   bool overwrite = false;
+  int threads = 1;                     // frames at a time
   bool quiet = false;
   LogFormat log_format = LogFormat::text;
   std::vector<std::string> command_line;

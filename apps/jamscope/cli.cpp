@@ -144,6 +144,8 @@ Command add_analyze(CLI::App& app, Options& o) {
       ->type_name("FILE");
   add_overrides(c, a.overrides, "--set analysis.jam_force=\"5 N\"");
   c.add_flag("--overwrite", a.overwrite, "replace the results of an earlier analysis in DIR");
+  a.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  add_threads(c, a.threads, "number of threads; the results do not depend on it");
   add_log_options(c, a.quiet, a.log_format);
   c.footer(
       "Examples:\n  jamscope analyze run/run.h5 -o jams --set jam_force=\"5 N\"\n"

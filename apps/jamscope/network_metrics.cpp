@@ -1,19 +1,16 @@
 #include "apps/jamscope/network_metrics.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
-#include <future>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "apps/jamscope/console.hpp"
 #include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/frames_in_flight.hpp"
 #include "apps/jamscope/toml_reader.hpp"
 #include "libjam/metrics/metrics.hpp"
 
@@ -113,38 +110,20 @@ struct Frame {
 
 using Rows = std::vector<std::vector<double>>;
 
-// Prints rows_of(frame number, snapshot before it or null, snapshot) of each frame asked for, in order. One thread reads; up to
-// options.threads frames are worked on at the same time.
+// Prints rows_of(frame number, snapshot before it or null, snapshot) of each frame asked for, in order.
 template <class RowsOf>
 void print_frames(const MetricsOptions& options, const jam::SnapshotSource& source, bool with_before, Table& table, RowsOf rows_of) {
   const std::size_t first = options.frame.value_or(0), last = options.frame ? first + 1 : source.frames;
-  const std::size_t at_a_time = std::size_t(std::max(options.threads, 1));
   Console console(stderr, LogFormat::text, options.quiet);
   Progress progress;
   progress.stage = "metrics";
   progress.unit = "frames";
   progress.total = double(last - first);
-  std::deque<std::future<Rows>> under_way;
-  const auto print_next = [&] {
-    for (const std::vector<double>& row : under_way.front().get()) table.row(row);
-    under_way.pop_front();
+  for_frames_in_flight(source, first, last, options.threads, with_before, rows_of, [&](const Rows& rows) {
+    for (const std::vector<double>& row : rows) table.row(row);
     progress.done += 1;
     console.progress(progress);
-  };
-  const bool single = last - first < 2;
-  omp_set_num_threads(int(at_a_time));
-  std::shared_ptr<const jam::Snapshot> before;
-  if (with_before && first > 0) before = std::make_shared<const jam::Snapshot>(source.read(first - 1));
-  for (std::size_t frame = first; frame < last; ++frame) {
-    auto snapshot = std::make_shared<const jam::Snapshot>(source.read(frame));
-    if (under_way.size() == at_a_time) print_next();
-    under_way.push_back(std::async(std::launch::async, [&rows_of, frame, before, snapshot, single, at_a_time] {
-      omp_set_num_threads(single ? int(at_a_time) : 1);  // of this thread only
-      return rows_of(frame, before.get(), *snapshot);
-    }));
-    if (with_before) before = std::move(snapshot);
-  }
-  while (!under_way.empty()) print_next();
+  });
   table.finish();
 }
 

@@ -229,6 +229,43 @@ TEST(Metrics, AreATableOfFrames) {
   EXPECT_EQ(run_program("metrics --frame 5 " + (scratch / "run.h5")).code, 2);
 }
 
+TEST(Metrics, OfEveryKindAreTheSameForAnyNumberOfThreadsAndSayWhereTheyAreNotDefined) {
+  const std::string formats = JAMSCOPE_DATA_DIR "/formats/";
+  const std::string dump = formats + "lammps.particles.dump.xz " + formats + "lammps.pair.local.xz " + formats +
+                           "lammps.wall.dump.xz --map " + JAMSCOPE_DATA_DIR + "/maps/lammps.toml";
+  for (const std::string of : {"frames", "changes", "particles", "contacts"}) {
+    const Outcome one = run_program("metrics " + dump + " --all --threads 1 --of " + of);
+    const Outcome three = run_program("metrics " + dump + " --all --threads 3 --of " + of);
+    EXPECT_EQ(one.code, 0) << one.err;
+    EXPECT_EQ(one.out, three.out);
+    EXPECT_GT(std::count(one.out.begin(), one.out.end(), '\n'), 1) << of;
+    if (one.out.find("nan") != std::string::npos) {
+      EXPECT_THAT(one.err, testing::HasSubstr(" has no value in ")) << of;
+    }
+  }
+  EXPECT_EQ(run_program("metrics " + dump + " --all --metric coordination").code, 2);
+}
+
+TEST(Analyze, IsTheSameForAnyNumberOfThreads) {
+  const Scratch scratch;
+  write_sample(scratch / "run.h5");
+  std::string first;
+  for (const std::string threads : {"1", "3"}) {
+    const std::string out = scratch / ("jams" + threads);
+    EXPECT_EQ(run_program("analyze " + (scratch / "run.h5") + " -o " + out + " --threads " + threads).code, 0);
+    const jam::Analysis analysis = jam::read_results(out + "/jam.h5");
+    EXPECT_FALSE(analysis.metrics.empty());
+    std::string text = jam::events_csv(analysis);
+    for (const jam::RecordedMetric& metric : analysis.metrics)
+      for (const double value : metric.values) text += fmt::format("{} {}\n", metric.name, value);
+    if (first.empty()) first = text;
+    EXPECT_EQ(text, first);
+  }
+  const Outcome unknown = run_program("analyze " + (scratch / "run.h5") + " -o " + (scratch / "x") + " --set metrics='[\"cordination\"]'");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, testing::HasSubstr("did you mean 'coordination'?"));
+}
+
 TEST(Summary, NumbersThatDoNotExistAreNull) {
   const auto summary = nlohmann::json::parse(summary_json({}, {}, {}, {}));
   EXPECT_TRUE(summary["analysis"]["jams"]["mean_survival_time_s"].is_null());
