@@ -5,6 +5,7 @@
 #include <deque>
 #include <future>
 #include <memory>
+#include <type_traits>
 
 #include "libjam/snapshot/snapshot.hpp"
 
@@ -19,7 +20,7 @@ void for_frames_in_flight(const jam::SnapshotSource& source, std::size_t first, 
                           Take take) {
   using Snapshot = std::shared_ptr<const jam::Snapshot>;
   const bool single = last - first < 2;
-  std::deque<std::future<decltype(work(first, (const jam::Snapshot*){}, jam::Snapshot{}))>> under_way;
+  std::deque<std::future<std::invoke_result_t<Work, std::size_t, const jam::Snapshot*, const jam::Snapshot&>>> under_way;
   const auto take_next = [&] {
     auto next = std::move(under_way.front());
     under_way.pop_front();

@@ -1,15 +1,18 @@
 // analyze, inspect and metrics on a small file written here.
 #include "apps/jamscope/stored_run.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/outputs.hpp"
 #include "libdem/errors.hpp"
+#include "libjam/results_file.hpp"
 #include "libjam/snapshot/writer.hpp"
 #include "tests/app/program.hpp"
 
