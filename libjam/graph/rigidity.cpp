@@ -1,5 +1,8 @@
 #include "libjam/graph/rigidity.hpp"
 
+#include <iostream>  // MetisSupport forgets it
+
+#include <Eigen/MetisSupport>
 #include <Eigen/SparseCholesky>
 #include <vector>
 
@@ -88,7 +91,8 @@ std::size_t rank_of(const std::vector<Constraint>& all, const std::vector<std::u
   Eigen::SparseMatrix<double> matrix(6 * n, 6 * n);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const double zero = 1e-12 * Eigen::VectorXd(matrix.diagonal()).maxCoeff();
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factors;
+  // Nested dissection leaves half the entries of Eigen's own ordering in the factors of a packing, and takes half the time.
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::MetisOrdering<int>> factors;
   factors.setShift(-zero);
   factors.compute(matrix);
   return std::size_t((factors.vectorD().array() > 0).count());

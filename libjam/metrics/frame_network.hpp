@@ -8,6 +8,7 @@
 #include "libjam/graph/communities.hpp"
 #include "libjam/graph/components.hpp"
 #include "libjam/graph/core_numbers.hpp"
+#include "libjam/graph/cycle_basis.hpp"
 #include "libjam/graph/force_chains.hpp"
 #include "libjam/graph/max_flow.hpp"
 #include "libjam/graph/path_lengths.hpp"
@@ -54,6 +55,8 @@ class FrameNetwork {
   const Biconnectivity& biconnected() { return once(biconnected_, [&] { return biconnectivity(graph); }); }
   const MaxFlow& flow() { return once(flow_, [&] { return max_force_flow(graph); }); }
   const PathLengths& paths() { return once(paths_, [&] { return path_lengths(graph); }); }
+  // By length, up to six contacts.
+  const std::vector<std::size_t>& basis_cycles() { return once(basis_cycles_, [&] { return basis_cycle_counts(graph, 6); }); }
   const Communities& groups() { return once(groups_, [&] { return communities(graph); }); }
   const Rigidity& rigid() { return once(rigid_, [&] { return rigidity(graph); }); }
   const PersistenceDiagram& parts() { return once(parts_, [&] { return persistence_of_components(graph, ranked()); }); }
@@ -89,6 +92,7 @@ class FrameNetwork {
   std::optional<Biconnectivity> biconnected_;
   std::optional<MaxFlow> flow_;
   std::optional<PathLengths> paths_;
+  std::optional<std::vector<std::size_t>> basis_cycles_;
   std::optional<Communities> groups_;
   std::optional<Rigidity> rigid_;
   std::optional<PersistenceDiagram> parts_, loops_;

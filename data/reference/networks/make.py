@@ -210,6 +210,9 @@ def metrics_of_paths(c, graph):
     yield "longest_path_length", joined.max()
     index = {name: k for k, name in enumerate(names)}
     plain = igraph.Graph(len(names), [(index[a], index[b]) for a, b in c.touch])
+    cycles = [len(cycle) for cycle in plain.minimum_cycle_basis()]
+    for length in (3, 4, 5, 6):
+        yield f"basis_cycles_of_{length}", cycles.count(length)
     yield "largest_betweenness", max(plain.betweenness(directed=False))
     yield "largest_contact_betweenness", max(plain.edge_betweenness(directed=False))
     # Lengths 1/f; contacts that do not push are not walked.

@@ -166,6 +166,7 @@ void standard_set(benchmark::State& state) {
 }
 BENCHMARK(standard_set)->Unit(benchmark::kMillisecond);
 
+NETWORK_BENCH(cycle_basis, use(n.basis_cycles()));
 NETWORK_BENCH(conductance, use(bridge_conductance(n.graph)));
 NETWORK_BENCH(contact_paths, use(contact_disjoint_load_paths(n.graph)));
 NETWORK_BENCH(particle_paths, use(particle_disjoint_load_paths(n.graph)));

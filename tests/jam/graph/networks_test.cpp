@@ -10,7 +10,9 @@
 #include "libjam/graph/biconnectivity.hpp"
 #include "libjam/graph/bridge_conductance.hpp"
 #include "libjam/graph/contact_force.hpp"
+#include "libjam/graph/components.hpp"
 #include "libjam/graph/core_numbers.hpp"
+#include "libjam/graph/cycle_basis.hpp"
 #include "libjam/graph/max_flow.hpp"
 #include "libjam/graph/rattlers.hpp"
 #include "libjam/graph/triangles.hpp"
@@ -246,6 +248,32 @@ TEST(Biconnectivity, IsWhereTheNetworkFallsApart) {
       EXPECT_EQ(found.articulation_point[v] != 0, parts(graph, v, -1) > whole) << v;
   });
   EXPECT_GT(seen, 100u);
+}
+
+// The edges of a cube: five faces of its six make all cycles. A square with one diagonal: two triangles. A ring of seven is longer than asked.
+TEST(CycleBasis, OfACubeASquareAndARing) {
+  Network cube;
+  for (unsigned a = 0; a < 8; ++a)
+    for (const unsigned bit : {1u, 2u, 4u})
+      if (!(a & bit)) cube.touch(a, a | bit, 1);
+  const Snapshot corners = cube.snapshot();
+  EXPECT_THAT(basis_cycle_counts(ContactGraph(corners, hand_made_run().walls), 6), ElementsAre(0, 0, 0, 0, 5, 0, 0));
+  const Snapshot square = Network().touch(1, 2, 1).touch(2, 3, 1).touch(3, 4, 1).touch(1, 4, 1).touch(1, 3, -1).snapshot();
+  EXPECT_THAT(basis_cycle_counts(ContactGraph(square, hand_made_run().walls), 6), ElementsAre(0, 0, 0, 2, 0, 0, 0));
+  Network seven;
+  for (unsigned a = 0; a < 7; ++a) seven.touch(a, (a + 1) % 7, 1);
+  const Snapshot ring = seven.snapshot();
+  EXPECT_THAT(basis_cycle_counts(ContactGraph(ring, hand_made_run().walls), 6), ElementsAre(0, 0, 0, 0, 0, 0, 0));
+  EXPECT_THAT(basis_cycle_counts(ContactGraph(ring, hand_made_run().walls), 7), ElementsAre(0, 0, 0, 0, 0, 0, 0, 1));
+}
+
+// With all lengths allowed as many as there are independent cycles.
+TEST(CycleBasis, IsABasis) {
+  for_random_networks(20, [](const ContactGraph& graph) {
+    std::size_t all = 0;
+    for (const std::size_t count : basis_cycle_counts(graph, 20)) all += count;
+    EXPECT_EQ(all, graph.edge_count() + connected_components(graph).size.size() - graph.vertex_count());
+  });
 }
 
 // Three grains in a row: all paths between the outer two lead through the middle one. Of a square's two, each has half.

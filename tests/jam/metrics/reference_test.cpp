@@ -117,7 +117,7 @@ TEST(MetricsReference, RealFramesAndRandomGraphsAgreeWithIndependentPrograms) {
       EXPECT_NEAR(value, expected, relative * std::max(1.0, std::abs(expected)));
     }
   }
-  EXPECT_EQ(compared.size(), 45u);
+  EXPECT_EQ(compared.size(), 49u);
   for (const auto& [metric, count] : compared) EXPECT_TRUE(count == 53 || count == 52 || count == 49) << metric << ": " << count;
 }
 
