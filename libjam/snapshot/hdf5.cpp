@@ -548,6 +548,11 @@ void File::check_rows(const std::string& name, Type type, std::uint64_t width, s
                    std::to_string(count));
   }
   const std::uint64_t row_bytes = size_of(type) * std::max<std::uint64_t>(width, 1);
+  // What a chunked array holds is the sum over all its chunks. To ask for less than the file's own size does no harm, and is not worth it.
+  std::error_code error;
+  if (const std::uintmax_t file_bytes = std::filesystem::file_size(path_, error);
+      !error && count <= file_bytes / row_bytes && chunk_rows(name) > 0)
+    return;
   if (count > largest_bytes(name) / size_of(stored.type) ||
       count > std::numeric_limits<std::int64_t>::max() / row_bytes ||
       count * std::max<std::uint64_t>(width, 1) * size_of(stored.type) > largest_bytes(name)) {

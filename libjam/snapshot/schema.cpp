@@ -1,15 +1,14 @@
 #include "libjam/snapshot/schema.hpp"
 
 #include <bit>
-#include <boost/crc.hpp>
+
+#include "libjam/snapshot/crc32c.hpp"
 
 namespace jam::schema {
 
 static_assert(std::endian::native == std::endian::little, "checksums are taken of little-endian bytes");
 
 namespace {
-
-using Crc32c = boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true>;
 
 template <class V>
 void add(Crc32c& crc, const std::vector<V>& values) {

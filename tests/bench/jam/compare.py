@@ -118,11 +118,11 @@ def main():
             theirs.setdefault(name, []).append((program, measured(1 if name == "exact_betweenness" else options.repeat, f)))
     wanted = "-rank_of_rigidity" if options.exact else "-rank_of_rigidity|exact_betweenness"
     command = [options.bench, "--benchmark_format=json", f"--benchmark_repetitions={options.repeat}",
-               "--benchmark_report_aggregates_only=true", f"--benchmark_filter={wanted}"]
+               f"--benchmark_report_aggregates_only={str(options.repeat > 1).lower()}", f"--benchmark_filter={wanted}"]
     found = json.loads(subprocess.run(command, check=True, env=one_core, capture_output=True, text=True).stdout)
     print(f"{'':30}{'libjam':>12}  others, ms (times as long)")
     for entry in found["benchmarks"]:
-        if not entry["name"].endswith("_median"):
+        if options.repeat > 1 and not entry["name"].endswith("_median"):
             continue
         name, ours = entry["run_name"], entry["real_time"]
         others = "  ".join(f"{program} {took:.4g} ({took / ours:.3g})" for program, took in theirs.get(name, []))
