@@ -11,9 +11,9 @@
 
 namespace jamscope {
 
-// For each frame of [first, last) calls work(frame, snapshot before it, snapshot) on a thread of its own, up to `threads` at the same time,
-// and take(result) on this one, in order. This one reads, because HDF5 does one thing at a time. Of a single frame the parts of its work share
-// the threads. The snapshot before is null at the first frame of the run, and everywhere unless `with_before`. What work or take throws comes
+// For each frame of [first, last) calls work(frame, snapshot before it, snapshot), with more than one thread on threads of their own, up to
+// `threads` at the same time, and take(result) on this one, in order. This one reads, because HDF5 does one thing at a time. Of a single frame
+// the parts of its work share the threads. The snapshot before is null at the first frame of the run, and everywhere unless `with_before`. What work or take throws comes
 // out here.
 template <class Work, class Take>
 void for_frames_in_flight(const jam::SnapshotSource& source, std::size_t first, std::size_t last, int threads, bool with_before, Work work,
@@ -31,7 +31,7 @@ void for_frames_in_flight(const jam::SnapshotSource& source, std::size_t first, 
   for (std::size_t frame = first; frame < last; ++frame) {
     auto snapshot = std::make_shared<const jam::Snapshot>(source.read(frame));
     if (under_way.size() == std::size_t(threads)) take_next();
-    under_way.push_back(std::async(std::launch::async, [&work, frame, before, snapshot, single, threads] {
+    under_way.push_back(std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&work, frame, before, snapshot, single, threads] {
       omp_set_num_threads(single ? threads : 1);  // of this thread only
       return work(frame, before.get(), *snapshot);
     }));
