@@ -288,6 +288,13 @@ TEST(ChangeMetrics, OfContactsHaveTheirDefinitions) {
   now.step = 21;
   EXPECT_THAT(contact_ages(now, 0.5), ::testing::ElementsAre(8, 4.5, 5));
   EXPECT_TRUE(contact_ages(now, 0).empty());
+  // Lost are 2-3 (born in step 6) and 3-4 (in step 7), which join three grains of four.
+  before.step = 10;
+  EXPECT_DOUBLE_EQ(lost_contact_age(before, now, 0.5), (4 + 3) * 0.5 / 2);
+  EXPECT_TRUE(std::isnan(lost_contact_age(before, before, 0.5)));
+  const RunInfo run = hand_made_run();
+  EXPECT_DOUBLE_EQ(broken_cluster_share(ContactGraph(before, run.walls), now), 0.75);
+  EXPECT_EQ(broken_cluster_share(ContactGraph(before, run.walls), before), 0);
 }
 
 // 3 N across a contact of 10 N with friction 0.5 uses 3/5 of it. One that pulls without adhesion has no limit.
