@@ -17,8 +17,8 @@ struct PathLengths {
   double efficiency, mean, longest;
 };
 
-// d counted in contacts. Searches from 512 particles at a time, bit by bit; counts are whole numbers, so the result is exact. About a
-// second for 35,000 particles.
+// d counted in contacts. Searches from 512 particles at a time, bit by bit; counts are whole numbers, so the result is exact. A few
+// seconds for 35,000 particles.
 PathLengths path_lengths(const ContactGraph& graph);
 
 // d as the sum of `length` [C] (contact_length.hpp) along the path; contacts whose length is not positive and finite are not walked.

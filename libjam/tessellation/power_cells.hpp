@@ -14,7 +14,7 @@
 
 namespace jam {
 
-// m^3, [N]. Time in proportion to the particles: about half a second for 35,000.
+// m^3, [N]. Time in proportion to the particles: about a second for 35,000.
 std::vector<double> power_cell_volumes(const Snapshot& snapshot, const std::vector<Wall>& walls);
 
 }  // namespace jam
