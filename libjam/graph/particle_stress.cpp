@@ -17,13 +17,15 @@ Vec3 tangential_of(const std::vector<Vec3f>& forces, std::size_t contacts, std::
 }
 
 constexpr double same = 1e-9;  // of two principal stresses, against the most compressive
+// Of the largest principal stress. What compresses less is rounding: a particle that is only pulled has two principal stresses of 0.
+constexpr double nothing = 1e-12;
 
 // By iteration: always right.
 Load most_compressive_iterated(const Eigen::Matrix3d& stress) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(stress);  // ascending
   const Vec3& value = principal.eigenvalues();
   Load load;
-  if (!(value[0] < 0)) return load;
+  if (!(value[0] < -nothing * std::max(value[2], 0.0))) return load;
   load.pressure = -value[0];
   if (value[1] - value[0] > same * load.pressure) load.direction = principal.eigenvectors().col(0);
   return load;
@@ -49,8 +51,8 @@ void most_compressive(const Eigen::Matrix3d* stress, Load* load) {
   Lanes t = -1 - root * (1.1547 - 0.1547 * root);  // within 0.004
   for (int step = 0; step < 4; ++step) t -= (t * (t * t - 3) - 2 * r) / (3 * (t * t - 1));
   const Lanes smallest = q + p * t;
-  // The roots add up to 0: the middle one is -t/2 - sqrt(3 - 3/4 t^2).
-  const Lanes gap = p * (-1.5 * t - (3 - 0.75 * t * t).max(0).sqrt());
+  // The roots add up to 0: the others are -t/2 -+ sqrt(3 - 3/4 t^2).
+  const Lanes apart = (3 - 0.75 * t * t).max(0).sqrt(), gap = p * (-1.5 * t - apart), largest = q + p * (apart - t / 2);
 
   const Lanes dx = xx - smallest, dy = yy - smallest, dz = zz - smallest;
   // Cross products of the rows (dx, xy, xz), (xy, dy, yz), (xz, yz, dz): entries of the adjugate, of which they are columns.
@@ -62,7 +64,7 @@ void most_compressive(const Eigen::Matrix3d* stress, Load* load) {
       load[k] = most_compressive_iterated(stress[k]);
       continue;
     }
-    if (!(smallest[k] < 0)) continue;
+    if (!(smallest[k] < -nothing * std::max(largest[k], 0.0))) continue;
     load[k].pressure = -smallest[k];
     if (!(gap[k] > same * load[k].pressure)) continue;
     // The adjugate is n (x) n times the product of the two gaps: its column of largest diagonal is the most accurate.

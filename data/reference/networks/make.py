@@ -228,6 +228,93 @@ def metrics_of_paths(c, graph):
     yield "force_efficiency", (1 / apart[numpy.isfinite(apart)]).sum() / len(apart)
 
 
+def stresses(c):
+    """Love-Weber stress of each sphere from the normal forces between particles; walls have no direction here."""
+    stress = {v: numpy.zeros((3, 3)) for v in c.place}
+    for (a, b), f in c.touch.items():
+        branch = numpy.subtract(c.place[b], c.place[a])
+        on_a = -f * branch / numpy.linalg.norm(branch)
+        share = c.radius[a] / (c.radius[a] + c.radius[b])
+        stress[a] += numpy.outer(share * branch, on_a)
+        stress[b] += numpy.outer((share - 1) * branch, -on_a)
+    return {v: s / (4 / 3 * numpy.pi * c.radius[v] ** 3) for v, s in stress.items()}
+
+
+def force_chains(c):
+    """Linear chains of Peters et al. by sets: who is loaded, which contacts lie along both loads, which of them is the best of a side."""
+    pressure, direction = {}, {}
+    for v, s in stresses(c).items():
+        values, vectors = numpy.linalg.eigh((s + s.T) / 2)
+        if values[0] < 0 and values[1] - values[0] > 1e-9 * -values[0]:
+            direction[v] = vectors[:, 0]
+        pressure[v] = max(-values[0], 0) if -values[0] > 1e-12 * values[2] else 0  # two of a particle only pulled are rounded zeros
+    mean = numpy.mean([p for p in pressure.values() if p > 0])
+    loaded = {v for v in direction if pressure[v] > mean}
+
+    def cosine(v, w):
+        branch = numpy.subtract(c.place[w], c.place[v])
+        return branch @ direction[v] / numpy.linalg.norm(branch)
+
+    least = numpy.cos(numpy.pi / 4)
+    along = [(a, b) for a, b in c.touch if {a, b} <= loaded and abs(cosine(a, b)) >= least and abs(cosine(b, a)) >= least]
+    sides = {}
+    for a, b in along:
+        for v, w in ((a, b), (b, a)):
+            sides.setdefault((v, cosine(v, w) > 0), []).append((-abs(cosine(v, w)), w))
+    best = {(v, min(found)[1]) for (v, _), found in sides.items()}
+    links = networkx.Graph([(a, b) for a, b in along if (a, b) in best and (b, a) in best])
+    return pressure, [links.subgraph(part) for part in networkx.connected_components(links) if len(part) >= 3]
+
+
+def chain_metrics(c):
+    pressure, chains = force_chains(c)
+    yield "mean_largest_compression", numpy.mean(list(pressure.values()))
+    yield "force_chain_count", len(chains)
+    yield "force_chain_share", sum(map(len, chains)) / len(c.place)
+    if chains:
+        yield "mean_force_chain_length", numpy.mean(list(map(len, chains)))
+    straight, bends = [], []
+    for chain in chains:
+        ends = [v for v in chain if chain.degree(v) == 1]
+        if not ends:
+            continue
+        x = numpy.array([c.place[v] for v in networkx.shortest_path(chain, *ends)])
+        steps = numpy.diff(x, axis=0)
+        straight.append(numpy.linalg.norm(x[-1] - x[0]) / numpy.linalg.norm(steps, axis=1).sum())
+        unit = steps / numpy.linalg.norm(steps, axis=1)[:, None]
+        bends += list(numpy.arccos(numpy.clip((unit[1:] * unit[:-1]).sum(axis=1), -1, 1)))
+    if straight:
+        yield "chain_straightness", numpy.mean(straight)
+        yield "chain_bend", numpy.mean(bends)
+
+
+def holds(c, graph):
+    """Of particles by their contacts, walls counted."""
+    walls = {v: 0 for v in c.place}
+    force = {v: 0.0 for v in c.place}
+    for a, f in c.blade + c.vessel:
+        walls[a] += 1
+        force[a] += max(f, 0)
+    for (a, b), f in c.touch.items():
+        force[a] += max(f, 0)
+        force[b] += max(f, 0)
+    n, e = len(c.place), len(c.touch)
+    yield "coordination_with_walls", (2 * e + sum(walls.values())) / n
+    degrees = [d for _, d in graph.degree()]
+    ones, nones = degrees.count(1), degrees.count(0)
+    if n > ones + nones:
+        yield "mechanical_coordination", (2 * e - ones) / (n - nones - ones)
+    left = set(c.place)
+    while True:
+        loose = {v for v in left if walls[v] + sum(w in left for w in graph[v]) < 2}
+        if not loose:
+            break
+        left -= loose
+    yield "rattler_share", 1 - len(left) / n
+    yield "mean_compressive_force", sum(force.values()) / n
+    yield "largest_compressive_force", max(force.values())
+
+
 def modularity(c, mean):
     """Best of ten of igraph's Leiden with the geographical null model."""
     index = {name: k for k, name in enumerate(c.place)}
@@ -278,6 +365,8 @@ def metrics(c):
     yield "largest_bridge_betweenness", 2 * max(through.values())
     yield "mean_repulsive_force", mean
     yield from metrics_of_paths(c, graph)
+    yield from holds(c, graph)
+    yield from chain_metrics(c)
     largest = graph.subgraph(max(parts, key=len))
     yield "algebraic_connectivity", numpy.linalg.eigvalsh(networkx.laplacian_matrix(largest).toarray().astype(float))[1]
     yield "modularity", modularity(c, mean)

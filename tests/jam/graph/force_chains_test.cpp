@@ -40,7 +40,7 @@ TEST(ParticleLoads, AreTheSmallestPrincipalStressAndItsDirection) {
   const auto uniform = [&] { return double(random()) / 4294967296.0 - 0.5; };
   const Vec3 values[] = {{-3, 1, 2},   {-3, -2, -1},       {-3, 0, 0},         {-3, -3 * (1 - 1e-3), 5}, {-3, -3 * (1 - 1e-7), 5},
                          {-3, -3, 5},  {-3, -1e-9, 1e-9},  {-1e6, 1, 2},       {2, 3, 4},                {-1, -1, -1},
-                         {-3, 8, 8},   {-2e-12, 0, 1e-12}, {-1, -0.97, -0.95}};
+                         {-3, 8, 8},   {-2e-12, 0, 1e-12}, {-1, -0.97, -0.95}, {0, 0, 5}, {0, 3, 5}};
   for (const Vec3& value : values)
     for (int repeat = 0; repeat < 50; ++repeat) {
       const double w = uniform(), x = uniform(), y = uniform(), z = uniform();
@@ -50,7 +50,10 @@ TEST(ParticleLoads, AreTheSmallestPrincipalStressAndItsDirection) {
       const Load load = particle_loads(stress)[0];
       const double size = value.cwiseAbs().maxCoeff(), gap = value[1] - value[0];
       EXPECT_NEAR(load.pressure, std::max(-value[0], 0.0), 1e-14 * size);
-      if (value[0] > 0 || gap == 0) {
+      if (value[0] == 0) {
+        EXPECT_EQ(load.pressure, 0);  // and not a rounding
+      }
+      if (value[0] >= 0 || gap == 0) {
         EXPECT_EQ(load.direction.norm(), 0);
       } else {
         EXPECT_NEAR(std::abs(load.direction.dot(turn.col(0))), 1, 1e-15 + std::pow(2e-15 * size / gap, 2)) << value.transpose();

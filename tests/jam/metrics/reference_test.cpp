@@ -69,6 +69,12 @@ const std::map<std::string, std::function<double(FrameNetwork&)>> others{
          if (!std::isnan(c)) sum += c, count += 1;
        return sum / count;
      }},
+    {"mean_largest_compression",
+     [](FrameNetwork& n) {
+       double sum = 0;
+       for (const Load& load : n.loads()) sum += load.pressure;
+       return sum / double(n.loads().size());
+     }},
     {"zero_modes_without_walls", [](FrameNetwork& n) { return double(n.rigid().zero_modes()); }},
     {"self_stresses_without_walls", [](FrameNetwork& n) { return double(n.rigid().self_stresses()); }},
 };
@@ -111,14 +117,15 @@ TEST(MetricsReference, RealFramesAndRandomGraphsAgreeWithIndependentPrograms) {
       const Metric* const row = find_metric(metric);
       ASSERT_TRUE(row != nullptr || others.count(metric));
       const double value = row != nullptr ? row->value(network) : others.at(metric)(network);
-      // Sums in another order: a rounding for each of up to 3000 terms, of which most cancel. Voronoi and hull volumes and eigenvalues
-      // of a thousand rows lose some digits more.
-      const double relative = metric == "algebraic_connectivity" ? 1e-10 : 1e-12;
+      // Sums in another order: a rounding for each of up to 3000 terms, of which most cancel. Eigenvalues of a thousand
+      // rows lose some digits more, and numpy's arccosine half of them where a chain is straight.
+      const double relative = metric == "algebraic_connectivity" ? 1e-10 : metric == "chain_bend" ? 1e-7 : 1e-12;
       EXPECT_NEAR(value, expected, relative * std::max(1.0, std::abs(expected)));
     }
   }
-  EXPECT_EQ(compared.size(), 49u);
-  for (const auto& [metric, count] : compared) EXPECT_TRUE(count == 53 || count == 52 || count == 49) << metric << ": " << count;
+  EXPECT_EQ(compared.size(), 60u);
+  // Chains have a shape where there are chains; distances lead from one random network to the next.
+  for (const auto& [metric, count] : compared) EXPECT_GE(count, metric.find("chain") == std::string::npos ? 49u : 20u) << metric;
 }
 
 // In the box around all spheres of the network, as the script gives it to voro++. Cells that are open to us, farther than four radii,
