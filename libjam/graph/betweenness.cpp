@@ -239,7 +239,7 @@ std::vector<Vertex> particles_at(const ContactGraph& graph, WallRole role) {
 }  // namespace
 
 Betweenness betweenness(const ContactGraph& graph, std::span<const Vertex> sources, std::span<const Vertex> targets,
-                        std::span<const double> length) {
+                        std::span<const double> length, BetweennessOf of) {
   const Numbering net(graph);
   std::vector<double> wanted(net.size(), 0.0);
   for (const Vertex t : targets) wanted[net.number[t]] = 1;
@@ -247,10 +247,15 @@ Betweenness betweenness(const ContactGraph& graph, std::span<const Vertex> sourc
   in_portions(sources.size(), [&](std::size_t p, std::size_t first, std::size_t last) {
     if (first == last) return;
     through[p].resize(net.size(), 0.0);
-    over[p].resize(graph.edge_count(), 0.0);
+    if (of == BetweennessOf::particles_and_contacts) over[p].resize(graph.edge_count(), 0.0);
     const auto add_all = [&](auto paths) {
       for (std::size_t k = first; k < last; ++k) {
-        paths.from(net.number[sources[k]], [contacts = over[p].data()](std::uint32_t c, double share) { contacts[c] += share; });
+        const std::uint32_t source = net.number[sources[k]];
+        if (of == BetweennessOf::particles) {
+          paths.from(source, [](std::uint32_t, double) {});
+        } else {
+          paths.from(source, [contacts = over[p].data()](std::uint32_t c, double share) { contacts[c] += share; });
+        }
         for (const std::uint32_t v : paths.order().subspan(1)) through[p][v] += paths.dependency(v);
       }
     };
@@ -260,13 +265,13 @@ Betweenness betweenness(const ContactGraph& graph, std::span<const Vertex> sourc
       add_all(PathsByLength(net, wanted, length));
     }
   });
-  return {by_vertex(net, sum_of(through, net.size())), sum_of(over, graph.edge_count())};
+  return {by_vertex(net, sum_of(through, net.size())), of == BetweennessOf::particles ? std::vector<double>{} : sum_of(over, graph.edge_count())};
 }
 
-Betweenness betweenness(const ContactGraph& graph, std::span<const double> length) {
+Betweenness betweenness(const ContactGraph& graph, std::span<const double> length, BetweennessOf of) {
   std::vector<Vertex> all(graph.vertex_count());
   std::iota(all.begin(), all.end(), 0u);
-  Betweenness both_ways = betweenness(graph, all, all, length);
+  Betweenness both_ways = betweenness(graph, all, all, length, of);
   for (double& value : both_ways.particle) value /= 2;
   for (double& value : both_ways.contact) value /= 2;
   return both_ways;

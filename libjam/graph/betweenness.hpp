@@ -18,18 +18,21 @@ namespace jam {
 
 struct Betweenness {
   std::vector<double> particle;  // [N]
-  std::vector<double> contact;   // [C] of contacts between particles
+  std::vector<double> contact;   // [C] of contacts between particles; empty where only particles were asked for, which takes less time
 };
+enum class BetweennessOf { particles, particles_and_contacts };
 
 // Sums over the pairs of a source s and another particle t that is a target of n_st(x) / n_st: the share of the shortest paths from s to
 // t that lead through particle x, x being neither, or over contact x. Pairs without any path count nothing. Particles that are source
 // and target at once make pairs both ways, so with all particles as both it is twice the raw count of undirected graphs.
 // `length` is [C], or empty for paths counted in contacts; contacts whose length is not positive and finite are not walked.
 Betweenness betweenness(const ContactGraph& graph, std::span<const ContactGraph::Vertex> sources,
-                        std::span<const ContactGraph::Vertex> targets, std::span<const double> length = {});
+                        std::span<const ContactGraph::Vertex> targets, std::span<const double> length = {},
+                        BetweennessOf of = BetweennessOf::particles_and_contacts);
 
 // Of all pairs of particles, each pair once: the raw count of undirected graphs.
-Betweenness betweenness(const ContactGraph& graph, std::span<const double> length = {});
+Betweenness betweenness(const ContactGraph& graph, std::span<const double> length = {},
+                        BetweennessOf of = BetweennessOf::particles_and_contacts);
 
 // From the particles that touch a blade to those that touch the vessel: the one that fits a gap.
 Betweenness bridge_betweenness(const ContactGraph& graph, std::span<const double> length = {});

@@ -273,7 +273,7 @@ constexpr auto of_each_particle = std::to_array<ParticleMetric>({
     {"community_size", "1", "particles of that community",
      [](FrameNetwork& n) { return of_particles(n, [&](auto v) { return double(n.groups().size[n.groups().label[v]]); }); }, Cost::high},
     {"betweenness", "1", "shortest paths between all other particles through it, each pair once, shared among equal ones",
-     [](FrameNetwork& n) { return betweenness(n.graph).particle; }, Cost::high},
+     [](FrameNetwork& n) { return betweenness(n.graph, {}, BetweennessOf::particles).particle; }, Cost::high},
     {"cell_volume", "m^3", "volume of its power cell, bounded by the walls; none for an open one", [](FrameNetwork& n) { return n.cells(); }, Cost::high,
      "the cell is open: the particle lies at a free surface"},
     {"local_solid_fraction", "1", "its volume over that of its power cell; none for an open one",

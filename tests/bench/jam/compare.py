@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """libjam's metrics and the same by networkx, igraph, scipy, GUDHI and numpy, in turn on one network and one core.
 
-    tests/bench/jam/compare.py build/tests/network_bench [RUN.h5] [--exact] [--repeat N]
+    tests/bench/jam/compare.py build/tests/network_bench [RUN.h5] [--exact] [--only REGEX] [--repeat N]
     (apt-get install python3-networkx python3-igraph python3-gudhi python3-scipy)
 
 Without RUN.h5 on the proxy network of network_bench; with it on the last frame of that run. Each time is the median of N (default 3), without
@@ -10,6 +10,7 @@ reading and without building the graph, which are lines of their own. --exact al
 import argparse
 import json
 import os
+import re
 import statistics
 import subprocess
 import tempfile
@@ -102,6 +103,7 @@ def main():
     parser.add_argument("bench")
     parser.add_argument("run", nargs="?")
     parser.add_argument("--exact", action="store_true")
+    parser.add_argument("--only", default=".", help="names of our benchmarks, a regular expression")
     parser.add_argument("--repeat", type=int, default=3)
     options = parser.parse_args()
     one_core = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -115,8 +117,11 @@ def main():
         subprocess.run([options.bench, "--edges", edges], check=True, env=one_core)
         theirs = {}
         for name, program, f in peers(edges, options.exact):
+            if not re.search(options.only, name):
+                continue
             theirs.setdefault(name, []).append((program, measured(1 if name == "exact_betweenness" else options.repeat, f)))
-    wanted = "-rank_of_rigidity" if options.exact else "-rank_of_rigidity|exact_betweenness"
+    slow = "rank_of_rigidity" if options.exact else "rank_of_rigidity|exact_betweenness"
+    wanted = f"-{slow}" if options.only == "." else options.only
     command = [options.bench, "--benchmark_format=json", f"--benchmark_repetitions={options.repeat}",
                f"--benchmark_report_aggregates_only={str(options.repeat > 1).lower()}", f"--benchmark_filter={wanted}"]
     found = json.loads(subprocess.run(command, check=True, env=one_core, capture_output=True, text=True).stdout)

@@ -117,6 +117,9 @@ TEST(Betweenness, IsTheSameToTheBitForAnyNumberOfThreads) {
     const Betweenness more = betweenness(graph);
     EXPECT_EQ(one.particle, more.particle);
     EXPECT_EQ(one.contact, more.contact);
+    const Betweenness particles = betweenness(graph, {}, BetweennessOf::particles);
+    EXPECT_EQ(one.particle, particles.particle);
+    EXPECT_TRUE(particles.contact.empty());
   }
   omp_set_num_threads(before);
 }
