@@ -11,15 +11,18 @@ namespace {
 
 using Vertex = ContactGraph::Vertex;
 
-// Particles under numbers that follow the network breadth first, so that partners lie near each other in memory.
+// Particles under numbers that follow the network breadth first, so that partners lie near each other in memory. Each has its links in
+// pairs, an odd one filled up with a link to nobody, the number size(): loops over pairs more often end where the processor expects it
+// (6 % faster in a packing; blocks of 3, 4 and 8 are slower).
 class Numbering {
  public:
   struct Link {
     std::uint32_t to, contact;
   };
+  static constexpr std::uint32_t block = 2;
   std::vector<Vertex> vertex;         // [N] by number
   std::vector<std::uint32_t> number;  // [N] by vertex
-  std::vector<Link> links;            // [2 C] to numbers
+  std::vector<Link> links;            // to numbers
 
   explicit Numbering(const ContactGraph& graph) : number(graph.vertex_count(), none) {
     const std::size_t n = graph.vertex_count();
@@ -37,13 +40,14 @@ class Numbering {
     }
     first_.reserve(n + 1);
     first_.push_back(0);
-    links.reserve(2 * graph.edge_count());
     for (const Vertex v : vertex) {
       for (const ContactGraph::Neighbor& neighbor : graph.neighbors(v)) links.push_back({number[neighbor.vertex], neighbor.contact});
+      while (links.size() % block != 0) links.push_back({std::uint32_t(n), 0});
       first_.push_back(std::uint32_t(links.size()));
     }
   }
   std::size_t size() const { return vertex.size(); }
+  std::uint32_t nobody() const { return std::uint32_t(vertex.size()); }
   std::span<const Link> links_of(std::uint32_t v) const { return {links.data() + first_[v], links.data() + first_[v + 1]}; }
 
  private:
@@ -63,6 +67,9 @@ class PathsByLength {
   std::span<const std::uint32_t> order() const { return order_; }
   double dependency(std::uint32_t v) const { return node_[v].dependency; }
 
+  void from(std::uint32_t source) {
+    from(source, [](std::uint32_t, double) {});
+  }
   // over(contact, share) for each contact on a path.
   template <class Over>
   void from(std::uint32_t source, Over over) {
@@ -74,7 +81,7 @@ class PathsByLength {
       const std::uint32_t u = order_[k];
       const double each = (wanted_[u] + node_[u].dependency) / node_[u].paths;
       for (const auto [v, c] : net_.links_of(u)) {
-        if (!leads(v, u, c)) continue;
+        if (v == net_.nobody() || !leads(v, u, c)) continue;
         const double share = node_[v].paths * each;
         node_[v].dependency += share;
         over(c, share);
@@ -109,7 +116,7 @@ class PathsByLength {
       order_.push_back(v);
       double paths = v == source;
       for (const auto [u, c] : net_.links_of(v)) {
-        if (!walkable(c)) continue;
+        if (u == net_.nobody() || !walkable(c)) continue;
         if (leads(u, v, c)) paths += node_[u].paths;
         const double reach = node_[v].away + length_[c];
         if (node_[u].rank == unreached && reach < node_[u].away) {
@@ -129,24 +136,31 @@ class PathsByLength {
 };
 
 // The same for paths counted in contacts. With n_v the number of shortest paths from the source to v, the dependency d_v of v and
-// c_v = (wanted_v + d_v)/n_v, Brandes' sum reads d_v = n_v (sum of c_u over the partners u one step farther). The loop over partners has no
-// branch that the data decide: every write is made, and the next one goes over it or not.
+// c_v = (wanted_v + d_v)/n_v, Brandes' sum reads c_v = wanted_v/n_v + sum of c_u over the partners u one step farther. No branch is decided by
+// data: every write is made, and the next one goes over it or not.
 class PathsByContacts {
  public:
   PathsByContacts(const Numbering& numbering, const std::vector<double>& wanted)
-      : net_(numbering), wanted_(wanted), node_(net_.size()), order_(net_.size() + 1), first_step_(net_.size() + 1),
-        steps_(net_.links.size() + 1), through_each_(net_.size()), dependency_(net_.size(), 0.0) {}
+      : net_(numbering), wanted_(wanted), node_(net_.size() + 1), order_(net_.size() + 1), steps_(net_.links.size() + 1),
+        through_each_(net_.size()) {
+    node_[net_.nobody()].away = 0;
+  }
 
   std::span<const std::uint32_t> order() const { return {order_.data(), reached_}; }  // nearest first, the source itself at the head
-  double dependency(std::uint32_t v) const { return dependency_[v]; }
+  double dependency(std::uint32_t v) const { return node_[v].paths * through_each_[v] - wanted_[v]; }
 
+  void from(std::uint32_t source) {
+    start(source);
+    walk([](std::size_t, std::uint32_t) {});
+    hand_back([](std::size_t, double) {});
+  }
+  // over(contact, share) for each contact on a path.
   template <class Over>
   void from(std::uint32_t source, Over over) {
-    for (const std::uint32_t v : order()) node_[v] = {};
-    order_[0] = source;
-    node_[source] = {1, 0};
-    walk();
-    hand_back(over);
+    start(source);
+    step_contact_.resize(steps_.size());
+    walk([contacts = step_contact_.data()](std::size_t step, std::uint32_t contact) { contacts[step] = contact; });
+    hand_back([&](std::size_t step, double share) { over(step_contact_[step], share); });
   }
 
  private:
@@ -154,58 +168,67 @@ class PathsByContacts {
     double paths = 0;
     std::uint32_t away = unreached;  // contacts from the source
   };
-  using Link = Numbering::Link;
+  struct Step {
+    std::uint32_t from, to;
+  };
 
-  void walk() {
+  void start(std::uint32_t source) {
+    for (const std::uint32_t v : order()) node_[v] = {};
+    order_[0] = source;
+    node_[source] = {1, 0};
+  }
+
+  // keep(step, contact) for each link that may be a step; the next one takes its place if it is none.
+  template <class Keep>
+  void walk(Keep keep) {
     Node* const node = node_.data();
     std::uint32_t* const order = order_.data();
-    Link* const steps = steps_.data();
-    std::size_t reached = 1;
-    std::uint32_t step = 0;
+    Step* const steps = steps_.data();
+    std::size_t reached = 1, step = 0;
     for (std::size_t k = 0; k < reached; ++k) {
       const std::uint32_t v = order[k], next = node[v].away + 1;
       const double paths = node[v].paths;
-      first_step_[k] = step;
-      for (const Link& link : net_.links_of(v)) {
-        Node& to = node[link.to];
-        order[reached] = link.to;
-        reached += to.away == unreached;
-        const std::uint32_t away = std::min(to.away, next);
-        const bool ahead = away == next;
-        to.away = away;
-        to.paths += double(ahead) * paths;
-        steps[step] = link;
-        step += ahead;
-      }
+      const std::span<const Numbering::Link> links = net_.links_of(v);
+      for (const Numbering::Link *link = links.data(), *const end = link + links.size(); link != end; link += Numbering::block)
+        for (std::uint32_t l = 0; l < Numbering::block; ++l) {
+          const std::uint32_t u = link[l].to;
+          Node& to = node[u];
+          order[reached] = u;
+          reached += to.away == unreached;
+          const std::uint32_t away = std::min(to.away, next);
+          const bool ahead = away == next;
+          to.away = away;
+          to.paths += double(ahead) * paths;
+          steps[step] = {v, u};
+          keep(step, link[l].contact);
+          step += ahead;
+        }
     }
-    first_step_[reached] = step;
     reached_ = reached;
+    steps_taken_ = step;
   }
 
+  // Back from the farthest: all steps from a particle are behind all steps to it. over(step, share) for each.
   template <class Over>
   void hand_back(Over over) {
     double* const each = through_each_.data();  // c
-    for (std::size_t k = reached_; k-- > 0;) {
-      const std::uint32_t v = order_[k];
-      const double paths = node_[v].paths;
-      double sum = 0;
-      for (std::uint32_t s = first_step_[k]; s < first_step_[k + 1]; ++s) {
-        const double ahead = each[steps_[s].to];
-        sum += ahead;
-        over(steps_[s].contact, paths * ahead);
-      }
-      each[v] = wanted_[v] / paths + sum;
-      dependency_[v] = paths * sum;
+    for (const std::uint32_t v : order()) each[v] = wanted_[v] / node_[v].paths;
+    for (std::size_t s = steps_taken_; s-- > 0;) {
+      const auto [v, u] = steps_[s];
+      const double ahead = each[u];
+      each[v] += ahead;
+      over(s, node_[v].paths * ahead);
     }
   }
 
   const Numbering& net_;
   const std::vector<double>& wanted_;
   std::vector<Node> node_;
-  std::vector<std::uint32_t> order_, first_step_;  // the steps from the k-th of the order begin at first_step_[k]
-  std::vector<Link> steps_;                        // on shortest paths, away from the source
-  std::vector<double> through_each_, dependency_;
-  std::size_t reached_ = 0;
+  std::vector<std::uint32_t> order_;
+  std::vector<Step> steps_;                  // on shortest paths, away from the source
+  std::vector<std::uint32_t> step_contact_;  // over which contact, where that is asked for
+  std::vector<double> through_each_;
+  std::size_t reached_ = 0, steps_taken_ = 0;
 };
 
 // f(portion, first, last) for portions of 0 .. count-1, the same for any number of threads, and how many there are.
@@ -252,7 +275,7 @@ Betweenness betweenness(const ContactGraph& graph, std::span<const Vertex> sourc
       for (std::size_t k = first; k < last; ++k) {
         const std::uint32_t source = net.number[sources[k]];
         if (of == BetweennessOf::particles) {
-          paths.from(source, [](std::uint32_t, double) {});
+          paths.from(source);
         } else {
           paths.from(source, [contacts = over[p].data()](std::uint32_t c, double share) { contacts[c] += share; });
         }
@@ -297,7 +320,7 @@ SampledBetweenness sampled_betweenness(const ContactGraph& graph, std::size_t sa
     squares[p].resize(n, 0.0);
     PathsByContacts paths(net, wanted);
     for (std::size_t k = first; k < last; ++k) {
-      paths.from(sources[k], [](std::uint32_t, double) {});
+      paths.from(sources[k]);
       for (const std::uint32_t v : paths.order().subspan(1)) {
         sums[p][v] += paths.dependency(v);
         squares[p][v] += paths.dependency(v) * paths.dependency(v);

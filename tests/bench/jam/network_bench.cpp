@@ -175,6 +175,7 @@ NETWORK_BENCH(fiedler, use(algebraic_connectivity(n.graph)));
 NETWORK_BENCH(cells, use(n.cells()));
 NETWORK_BENCH(paths, use(n.paths()));
 NETWORK_BENCH(blade_to_vessel_betweenness, use(n.between()));
+NETWORK_BENCH(betweenness_of_2000_samples, use(sampled_betweenness(n.graph, 2000, 1)));
 NETWORK_BENCH(exact_betweenness, use(betweenness(n.graph, {}, BetweennessOf::particles)));
 NETWORK_BENCH(exact_betweenness_with_contacts, use(betweenness(n.graph)));
 NETWORK_BENCH(rank_of_rigidity, use(n.rigid()));
