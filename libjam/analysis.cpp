@@ -107,18 +107,16 @@ std::string events_csv(const Analysis& analysis) {
 Pipeline::Pipeline(const RunInfo& info, const Criteria& criteria) : info_(info) {
   check_criteria(criteria, info);
   analysis_.criteria = criteria;
-  const auto record = [&](const Metric& metric) {
+  const auto& wanted = criteria.metrics;
+  if (wanted)
+    for (const std::string& name : *wanted)
+      if (find_metric(name) == nullptr) throw CriteriaError("criteria: metrics: \"" + name + "\" is none that is known");
+  // In the order of the table and each once, however they were asked for.
+  analysis_.criteria.metrics.emplace();
+  for (const Metric& metric : metrics()) {
+    if (wanted ? std::find(wanted->begin(), wanted->end(), metric.name) == wanted->end() : metric.cost != Cost::low) continue;
+    analysis_.criteria.metrics->emplace_back(metric.name);
     analysis_.metrics.push_back({std::string(metric.name), std::string(metric.unit), std::string(metric.doc), {}});
-  };
-  if (!criteria.metrics) {
-    for (const Metric& metric : metrics())
-      if (metric.cost == Cost::low) record(metric);
-    return;
-  }
-  for (const std::string& name : *criteria.metrics) {
-    const Metric* const metric = find_metric(name);
-    if (metric == nullptr) throw CriteriaError("criteria: metrics: \"" + name + "\" is none that is known");
-    record(*metric);
   }
 }
 

@@ -378,6 +378,8 @@ Analysis read_results(const std::filesystem::path& path) {
   read_scalars(file, "/summary", analysis);
   analysis.frames = read_table<FrameSummary>(file, "/frames");
   if (file.exists("/metrics")) analysis.metrics = read_metrics(file, analysis.frames.size());
+  analysis.criteria.metrics.emplace();
+  for (const RecordedMetric& metric : analysis.metrics) analysis.criteria.metrics->push_back(metric.name);
   analysis.clusters = read_with_members<Cluster>(file, "/clusters");
   analysis.events = read_with_members<JamEvent>(file, "/events");
   analysis.tracks = read_tracks(file);

@@ -13,8 +13,8 @@ namespace jamscope {
 
 // For each frame of [first, last) calls work(frame, snapshot before it, snapshot), with more than one thread on threads of their own, up to
 // `threads` at the same time, and take(result) on this one, in order. This one reads, because HDF5 does one thing at a time. Of a single frame
-// the parts of its work share the threads. The snapshot before is null at the first frame of the run, and everywhere unless `with_before`. What work or take throws comes
-// out here.
+// the parts of its work share the threads. The snapshot before is null at the first frame of the run, and everywhere unless `with_before`.
+// What work or take throws comes out here.
 template <class Work, class Take>
 void for_frames_in_flight(const jam::SnapshotSource& source, std::size_t first, std::size_t last, int threads, bool with_before, Work work,
                           Take take) {

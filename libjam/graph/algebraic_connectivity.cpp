@@ -17,7 +17,7 @@ double algebraic_connectivity(const ContactGraph& graph, std::span<const double>
   const auto weight_of = [&](std::uint32_t c) { return weight.empty() ? 1.0 : weight[c]; };
   std::vector<std::uint8_t> joins(graph.edge_count());
   for (std::uint32_t c = 0; c < joins.size(); ++c) joins[c] = weight_of(c) > 0;
-  const Components components = connected_components(graph, std::vector<std::uint8_t>(graph.vertex_count(), 1), joins);
+  const Components components = connected_components(graph, joins);
   if (components.size.empty() || components.size[0] < 2) return unknown;
 
   const int n = int(components.size[0]);

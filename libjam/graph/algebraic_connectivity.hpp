@@ -12,7 +12,8 @@
 
 namespace jam {
 
-// In the unit of `weight` [C], or 1 where it is empty: every contact weighs 1. NaN where no two particles are joined.
+// In the unit of `weight` [C], or 1 where it is empty: every contact weighs 1. NaN where no two particles are joined, or where a
+// thousand iterations do not bring it to 1e-12.
 double algebraic_connectivity(const ContactGraph& graph, std::span<const double> weight = {});
 
 }  // namespace jam

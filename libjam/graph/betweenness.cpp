@@ -136,18 +136,18 @@ class PathsByLength {
 };
 
 // The same for paths counted in contacts. With n_v the number of shortest paths from the source to v, the dependency d_v of v and
-// c_v = (wanted_v + d_v)/n_v, Brandes' sum reads c_v = wanted_v/n_v + sum of c_u over the partners u one step farther. No branch is decided by
-// data: every write is made, and the next one goes over it or not.
+// c_v = (wanted_v + d_v)/n_v, Brandes' sum reads d_v = n_v (sum of c_u over the partners u one step farther). No branch is decided by data:
+// every write is made, and the next one goes over it or not.
 class PathsByContacts {
  public:
   PathsByContacts(const Numbering& numbering, const std::vector<double>& wanted)
       : net_(numbering), wanted_(wanted), node_(net_.size() + 1), order_(net_.size() + 1), steps_(net_.links.size() + 1),
-        through_each_(net_.size()) {
+        each_(net_.size()) {
     node_[net_.nobody()].away = 0;
   }
 
   std::span<const std::uint32_t> order() const { return {order_.data(), reached_}; }  // nearest first, the source itself at the head
-  double dependency(std::uint32_t v) const { return node_[v].paths * through_each_[v] - wanted_[v]; }
+  double dependency(std::uint32_t v) const { return node_[v].paths * each_[v].behind; }
 
   void from(std::uint32_t source) {
     start(source);
@@ -170,6 +170,10 @@ class PathsByContacts {
   };
   struct Step {
     std::uint32_t from, to;
+  };
+  // c, for each of the paths to a particle: what ends there, and what leads through it.
+  struct Each {
+    double own = 0, behind = 0;
   };
 
   void start(std::uint32_t source) {
@@ -211,12 +215,12 @@ class PathsByContacts {
   // Back from the farthest: all steps from a particle are behind all steps to it. over(step, share) for each.
   template <class Over>
   void hand_back(Over over) {
-    double* const each = through_each_.data();  // c
-    for (const std::uint32_t v : order()) each[v] = wanted_[v] / node_[v].paths;
+    Each* const each = each_.data();
+    for (const std::uint32_t v : order()) each[v] = {wanted_[v] / node_[v].paths, 0};
     for (std::size_t s = steps_taken_; s-- > 0;) {
       const auto [v, u] = steps_[s];
-      const double ahead = each[u];
-      each[v] += ahead;
+      const double ahead = each[u].own + each[u].behind;
+      each[v].behind += ahead;
       over(s, node_[v].paths * ahead);
     }
   }
@@ -227,7 +231,7 @@ class PathsByContacts {
   std::vector<std::uint32_t> order_;
   std::vector<Step> steps_;                  // on shortest paths, away from the source
   std::vector<std::uint32_t> step_contact_;  // over which contact, where that is asked for
-  std::vector<double> through_each_;
+  std::vector<Each> each_;
   std::size_t reached_ = 0, steps_taken_ = 0;
 };
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <numeric>
 
 #include "libjam/graph/components.hpp"
 #include "libjam/graph/contact_force.hpp"
+#include "libjam/graph/mean_repulsive_force.hpp"
 
 namespace jam {
 namespace {
@@ -22,11 +24,10 @@ struct Link {
 using Weighted = std::vector<std::vector<Link>>;
 using Partition = std::vector<std::uint32_t>;
 
-double mean_repulsive(const ContactGraph& graph) {
-  double sum = 0, count = 0;
-  for (std::size_t c = 0; c < graph.edge_count(); ++c)
-    if (const double force = repulsive_force(graph.snapshot().pp, c); force > 0) sum += force, count += 1;
-  return count > 0 ? sum / count : 0;
+// N, what a contact must carry to hold a community together.
+double null_force(const ContactGraph& graph, double resolution) {
+  const double mean = mean_repulsive_force(graph);
+  return std::isnan(mean) ? 0 : resolution * mean;
 }
 
 std::uint64_t mixed(std::uint64_t x) {  // the finaliser of splitmix64
@@ -209,7 +210,7 @@ bool improve(const Weighted& particles, Partition& partition) {
 }  // namespace
 
 double community_quality(const ContactGraph& graph, std::span<const std::uint32_t> label, double resolution) {
-  const double null = resolution * mean_repulsive(graph);
+  const double null = null_force(graph, resolution);
   double quality = 0;
   for (std::size_t c = 0; c < graph.edge_count(); ++c)
     if (const auto [a, b] = graph.snapshot().pp.row[c]; label[a] == label[b]) quality += repulsive_force(graph.snapshot().pp, c) - null;
@@ -218,7 +219,7 @@ double community_quality(const ContactGraph& graph, std::span<const std::uint32_
 
 Communities communities(const ContactGraph& graph, double resolution) {
   const std::size_t n = graph.vertex_count();
-  const double null = resolution * mean_repulsive(graph);
+  const double null = null_force(graph, resolution);
   std::vector<std::uint32_t> best;
   double best_quality = -1;
   for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
@@ -246,7 +247,7 @@ Communities communities(const ContactGraph& graph, double resolution) {
     const auto [a, b] = graph.snapshot().pp.row[c];
     inside[c] = best[a] == best[b];
   }
-  Components pieces = connected_components(graph, std::vector<std::uint8_t>(n, 1), inside);
+  Components pieces = connected_components(graph, inside);
   Communities found{std::move(pieces.label), std::move(pieces.size)};
   found.quality = community_quality(graph, found.label, resolution);
   double sum = 0;

@@ -1,8 +1,8 @@
 #include "libjam/graph/components.hpp"
 
 #include <algorithm>
-#include <boost/pending/disjoint_sets.hpp>
-#include <numeric>
+
+#include "libjam/graph/disjoint_sets.hpp"
 
 namespace jam {
 namespace {
@@ -11,17 +11,15 @@ namespace {
 template <class KeepVertex, class KeepContact>
 Components find_components(const ContactGraph& graph, KeepVertex keep_vertex, KeepContact keep_contact) {
   const std::uint32_t n = std::uint32_t(graph.vertex_count());
-  std::vector<std::uint32_t> parent(n), depth(n, 0);
-  std::iota(parent.begin(), parent.end(), 0u);
-  boost::disjoint_sets<std::uint32_t*, std::uint32_t*> sets(depth.data(), parent.data());
+  DisjointSets sets(n);
   const auto& rows = graph.snapshot().pp.row;
   for (std::size_t c = 0; c < rows.size(); ++c)
-    if (const auto [a, b] = rows[c]; keep_contact(c) && keep_vertex(a) && keep_vertex(b)) sets.union_set(a, b);
+    if (const auto [a, b] = rows[c]; keep_contact(c) && keep_vertex(a) && keep_vertex(b)) sets.join(a, b);
 
   std::vector<std::uint32_t> size(n, 0), root(n), order, rank(n);
   for (std::uint32_t v = 0; v < n; ++v) {
     if (!keep_vertex(v)) continue;
-    root[v] = sets.find_set(v);
+    root[v] = sets.of(v);
     if (size[root[v]]++ == 0) order.push_back(root[v]);
   }
   // They come by their smallest row already; a stable sort leaves ties so.
@@ -43,6 +41,11 @@ Components find_components(const ContactGraph& graph, KeepVertex keep_vertex, Ke
 Components connected_components(const ContactGraph& graph) {
   const auto all = [](std::size_t) { return true; };
   return find_components(graph, all, all);
+}
+
+Components connected_components(const ContactGraph& graph, std::span<const std::uint8_t> keep_contact) {
+  return find_components(
+      graph, [](std::size_t) { return true; }, [&](std::size_t c) { return keep_contact[c] != 0; });
 }
 
 Components connected_components(const ContactGraph& graph, std::span<const std::uint8_t> keep_vertex,

@@ -21,6 +21,9 @@ struct Components {
 // All vertices, all contacts.
 Components connected_components(const ContactGraph& graph);
 
+// All vertices, joined only by contacts with keep_contact[c] != 0, [C].
+Components connected_components(const ContactGraph& graph, std::span<const std::uint8_t> keep_contact);
+
 // Only vertices with keep_vertex[v] != 0, joined only by contacts with keep_contact[c] != 0. Lengths are N and C.
 Components connected_components(const ContactGraph& graph, std::span<const std::uint8_t> keep_vertex,
                                 std::span<const std::uint8_t> keep_contact);

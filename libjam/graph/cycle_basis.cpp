@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <iterator>
 #include <limits>
+
+#include "libjam/graph/modulo_two.hpp"
 
 namespace jam {
 namespace {
@@ -79,19 +80,14 @@ std::vector<std::size_t> basis_cycle_counts(const ContactGraph& graph, std::size
 
   std::vector<std::size_t> count(longest + 1, 0);
   std::vector<Cycle> owner(graph.edge_count());  // of each contact: the reduced cycle of which it is the first
-  Cycle rest, sum;
+  Cycle rest, scratch;
   for (std::size_t length = 3; length <= longest; ++length) {
     std::vector<Cycle>& cycles = by_length[length];
     std::sort(cycles.begin(), cycles.end());
     cycles.erase(std::unique(cycles.begin(), cycles.end()), cycles.end());
     for (const Cycle& cycle : cycles) {
       rest = cycle;
-      while (!rest.empty() && !owner[rest.front()].empty()) {
-        sum.clear();
-        const Cycle& other = owner[rest.front()];
-        std::set_symmetric_difference(rest.begin(), rest.end(), other.begin(), other.end(), std::back_inserter(sum), std::greater<>());
-        rest.swap(sum);
-      }
+      while (!rest.empty() && !owner[rest.front()].empty()) add_modulo_two(rest, owner[rest.front()], scratch);
       if (rest.empty()) continue;
       ++count[length];
       owner[rest.front()] = rest;

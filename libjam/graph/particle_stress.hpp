@@ -25,7 +25,8 @@ struct Load {
   double pressure = 0;           // Pa, > 0; 0 where nothing compresses the particle
   Vec3 direction = Vec3::Zero();  // unit, its sign means nothing; zero where the load has no direction of its own
 };
-// [N]. Less than 1e-12 of the largest principal stress is rounding and counts as none. Where two principal stresses are the most compressive within 1e-9 of each other, no direction is.
+// [N]. Less than 1e-12 of the largest principal stress is rounding and counts as none. Where two principal stresses are the most
+// compressive within 1e-9 of each other, no direction is.
 std::vector<Load> particle_loads(std::span<const Eigen::Matrix3d> stress);
 
 }  // namespace jam

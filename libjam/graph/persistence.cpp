@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <numeric>
-#include <span>
 
+#include "libjam/graph/disjoint_sets.hpp"
+#include "libjam/graph/modulo_two.hpp"
 #include "libjam/graph/triangles.hpp"
 
 namespace jam {
@@ -23,26 +23,22 @@ struct Filtration {
 
   Filtration(const ContactGraph& graph, const RankedContacts& ranked) {
     // A particle comes in with the first of its contacts.
-    std::vector<Vertex> parent(graph.vertex_count());
-    std::iota(parent.begin(), parent.end(), 0u);
-    std::vector<double> birth(graph.vertex_count(), 0.0);
-    const auto root = [&](Vertex v) {
-      while (parent[v] != v) v = parent[v] = parent[parent[v]];
-      return v;
-    };
+    DisjointSets parts(graph.vertex_count());
+    std::vector<double> birth(graph.vertex_count(), 0.0);  // of each part, at the particle that stands for it
     closes.reserve(ranked.size());
     for (const auto& [force, a, b, contact] : ranked) {
       if (birth[a] == 0) birth[a] = force;
       if (birth[b] == 0) birth[b] = force;
-      Vertex older = root(a), younger = root(b);
-      closes.push_back(older == younger);
-      if (older == younger) continue;
-      if (birth[older] < birth[younger]) std::swap(older, younger);
-      if (birth[younger] > force) components.push_back({birth[younger], force});
-      parent[younger] = older;
+      const Vertex one = parts.of(a), other = parts.of(b);
+      closes.push_back(one == other);
+      if (one == other) continue;
+      const auto [younger, older] = std::minmax({birth[one], birth[other]});
+      if (younger > force) components.push_back({younger, force});
+      parts.join(one, other);
+      birth[parts.of(one)] = older;
     }
-    for (Vertex v = 0; v < parent.size(); ++v)
-      if (parent[v] == v && birth[v] > 0) components.push_back({birth[v], 0});
+    for (Vertex v = 0; v < birth.size(); ++v)
+      if (parts.of(v) == v && birth[v] > 0) components.push_back({birth[v], 0});
     std::sort(components.begin(), components.end(), std::greater<>());
   }
 };
@@ -62,13 +58,6 @@ std::vector<Triangle> triangles_of(const ContactGraph& graph, const RankedContac
   });
   std::sort(triangles.begin(), triangles.end());
   return triangles;
-}
-
-// Columns of contacts' ranks, descending, over the field of two elements.
-void add_to(std::vector<std::uint32_t>& column, std::span<const std::uint32_t> other, std::vector<std::uint32_t>& scratch) {
-  scratch.clear();
-  std::set_symmetric_difference(column.begin(), column.end(), other.begin(), other.end(), std::back_inserter(scratch), std::greater<>());
-  column.swap(scratch);
 }
 
 }  // namespace
@@ -104,9 +93,9 @@ PersistenceDiagram persistence_of_loops_not_filled(const ContactGraph& graph, co
     while (!column.empty()) {
       const std::uint32_t last = column.front();
       if (triangle_at[last] != none) {
-        add_to(column, triangles[triangle_at[last]], scratch);
+        add_modulo_two(column, triangles[triangle_at[last]], scratch);
       } else if (reduced_at[last] != none) {
-        add_to(column, reduced[reduced_at[last]], scratch);
+        add_modulo_two(column, reduced[reduced_at[last]], scratch);
       } else {
         reduced_at[last] = std::uint32_t(reduced.size());
         reduced.push_back(column);

@@ -93,8 +93,12 @@ std::size_t rank_of(const std::vector<Constraint>& all, const std::vector<std::u
   const double zero = 1e-12 * Eigen::VectorXd(matrix.diagonal()).maxCoeff();
   // Nested dissection leaves half the entries of Eigen's own ordering in the factors of a packing, and takes half the time.
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::MetisOrdering<int>> factors;
-  factors.setShift(-zero);
-  factors.compute(matrix);
+  // A pivot of exactly zero stops it; with another shift it is none.
+  for (double shift = zero; shift < 2 * zero; shift *= 1.1) {
+    factors.setShift(-shift);
+    factors.compute(matrix);
+    if (factors.info() == Eigen::Success) break;
+  }
   return std::size_t((factors.vectorD().array() > 0).count());
 }
 

@@ -11,8 +11,8 @@
 //   self_stresses   rows - rank: independent sets of contact forces in balance without any load
 //
 // Rows less rank and degrees of freedom less rank give Calladine's count (Int. J. Solids Struct. 14, 161, 1978). The pebble game counts
-// right only in generic networks in two dimensions; here the rank is that of the matrix. Three spheres in a row of touches have three
-// motions beyond the rigid ones, four in a tetrahedron none.
+// right only in generic networks in two dimensions; here the rank is that of the matrix. Three spheres that touch each other have
+// three motions beyond the rigid ones, four in a tetrahedron none.
 //
 // The rank is the number of eigenvalues of R^T R above 1e-12 of its largest diagonal entry, counted by the signs of a sparse LDL^T
 // factorisation (Sylvester's law of inertia); turns are measured by the mean radius times their angle. Particles with a single sticking
@@ -33,9 +33,8 @@ struct Rigidity {
 // Contacts with walls whose direction the source does not know (neither point nor normal) are left out.
 Rigidity rigidity(const ContactGraph& graph);
 
-// Contacts per particle (walls counted as half of two particles' are: each once) at which constraints and degrees of freedom are as many,
-// Z = (d + 1) + 2 n_m/d in d = 3 dimensions with n_m sliding contacts per particle (network of frictional spheres; each sliding contact
-// takes one constraint away: the Coulomb equality). `sliding_per_particle` = n_m. 4 where none slides.
+// Coordination at which constraints and degrees of freedom are as many: Z = (d + 1) + 2 n_m/d in d = 3 dimensions with n_m =
+// `sliding_per_particle` sliding contacts per particle, each of which takes one constraint away (the Coulomb equality). 4 where none slides.
 inline double isostatic_coordination(double sliding_per_particle) {
   return 4 + 2 * sliding_per_particle / 3;
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "libjam/graph/contact_force.hpp"
+#include "libjam/graph/disjoint_sets.hpp"
 
 namespace jam {
 namespace {
@@ -21,24 +21,19 @@ double strongest(const ContactGraph& graph, ContactGraph::Vertex v, WallRole rol
 // Sets of particles, and which of the two ends each reaches.
 class Sets {
  public:
-  explicit Sets(std::size_t n) : parent_(n), ends_(n, 0) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t of(std::uint32_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
+  explicit Sets(std::size_t n) : sets_(n), ends_(n, 0) {}
   // Do these now reach both ends?
-  bool reach(std::uint32_t v, std::uint8_t end) { return (ends_[of(v)] |= end) == both; }
+  bool reach(std::uint32_t v, std::uint8_t end) { return (ends_[sets_.of(v)] |= end) == both; }
   bool join(std::uint32_t a, std::uint32_t b) {
-    a = of(a), b = of(b);
-    if (a == b) return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    return (ends_[std::min(a, b)] |= ends_[std::max(a, b)]) == both;
+    const std::uint8_t ends = ends_[sets_.of(a)] | ends_[sets_.of(b)];
+    sets_.join(a, b);
+    return (ends_[sets_.of(a)] = ends) == both;
   }
   static constexpr std::uint8_t blade = 1, vessel = 2, both = 3;
 
  private:
-  std::vector<std::uint32_t> parent_;
-  std::vector<std::uint8_t> ends_;
+  DisjointSets sets_;
+  std::vector<std::uint8_t> ends_;  // of each set, at the particle that stands for it
 };
 
 // A contact with an end.

@@ -69,8 +69,7 @@ inline double lost_contact_age(const Snapshot& before, const Snapshot& now, doub
 
 inline double broken_cluster_share(const ContactGraph& before, const Snapshot& now) {
   if (before.vertex_count() == 0) return std::numeric_limits<double>::quiet_NaN();
-  const std::vector<std::uint8_t> lost = lost_contacts(before.snapshot(), now), all(before.vertex_count(), 1);
-  const std::uint32_t largest = connected_components(before, all, lost).size[0];
+  const std::uint32_t largest = connected_components(before, lost_contacts(before.snapshot(), now)).size[0];
   return largest > 1 ? double(largest) / double(before.vertex_count()) : 0;
 }
 

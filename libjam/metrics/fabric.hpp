@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-#include "libjam/metrics/mean_repulsive_force.hpp"
+#include "libjam/graph/mean_repulsive_force.hpp"
 
 namespace jam {
 

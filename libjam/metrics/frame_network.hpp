@@ -19,7 +19,7 @@
 #include "libjam/graph/widest_path.hpp"
 #include "libjam/jamming/compressive_force.hpp"
 #include "libjam/jamming/jam_clusters.hpp"
-#include "libjam/metrics/mean_repulsive_force.hpp"
+#include "libjam/graph/mean_repulsive_force.hpp"
 #include "libjam/metrics/mobilisation.hpp"
 #include "libjam/tessellation/power_cells.hpp"
 

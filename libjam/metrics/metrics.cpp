@@ -154,7 +154,7 @@ constexpr auto of_frames = std::to_array<Metric>({
      "no contacts"},
     {"algebraic_connectivity", "1", "second smallest eigenvalue of the Laplacian of the largest component",
      [](FrameNetwork& n) { return algebraic_connectivity(n.graph); }, Cost::high,
-     "no contacts"},
+     "no contacts, or the iteration for it does not converge"},
     {"zero_modes", "1", "motions of the particles that no contact resists, walls held still",
      [](FrameNetwork& n) { return double(n.rigid().zero_modes()); }, Cost::high},
     {"self_stresses", "1", "independent sets of contact forces in balance by themselves",

@@ -37,8 +37,7 @@ inline double sliding_per_particle(const ContactGraph& graph) {
 }
 inline double largest_sliding_cluster_share(const ContactGraph& graph) {
   if (graph.vertex_count() == 0 || !sliding_known(graph)) return std::numeric_limits<double>::quiet_NaN();
-  const std::vector<std::uint8_t> sliding = sliding_contacts(graph), all(graph.vertex_count(), 1);
-  const std::uint32_t largest = connected_components(graph, all, sliding).size[0];
+  const std::uint32_t largest = connected_components(graph, sliding_contacts(graph)).size[0];
   return largest > 1 ? double(largest) / double(graph.vertex_count()) : 0;
 }
 

@@ -1,7 +1,7 @@
 // Share of the repulsive particle contacts that are stronger than their mean, f > <f> (Radjai et al., PRL 77, 274,
 // 1996). Walls and adhesive contacts are left out. NaN where nothing is compressed.
 #pragma once
-#include "libjam/metrics/mean_repulsive_force.hpp"
+#include "libjam/graph/mean_repulsive_force.hpp"
 
 namespace jam {
 

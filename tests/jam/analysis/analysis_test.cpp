@@ -118,14 +118,15 @@ TEST(PipelineTest, RecordsTheMetricsAskedForAndThoseOfLowCostOtherwise) {
   for (const Metric& metric : metrics()) low += metric.cost == Cost::low;
   EXPECT_EQ(analyze(frames).metrics.size(), low);
   Criteria criteria;
-  criteria.metrics = {"bridge_conductance", "coordination"};
+  criteria.metrics = {"bridge_conductance", "coordination", "bridge_conductance"};
   Pipeline pipeline(hand_made_run(), criteria);
   for (const Snapshot& frame : frames) pipeline.add(frame);
   const Analysis a = pipeline.finish({});
   ASSERT_EQ(a.metrics.size(), 2u);
-  EXPECT_EQ(a.metrics[0].name, "bridge_conductance");
-  EXPECT_EQ(a.metrics[0].unit, "N");
-  for (std::size_t k = 0; k < frames.size(); ++k) EXPECT_EQ(a.metrics[1].values.at(k), a.frames[k].coordination);
+  EXPECT_EQ(a.metrics[0].name, "coordination");  // in the order of the table, each once
+  EXPECT_EQ(a.metrics[1].name, "bridge_conductance");
+  EXPECT_EQ(a.metrics[1].unit, "N");
+  for (std::size_t k = 0; k < frames.size(); ++k) EXPECT_EQ(a.metrics[0].values.at(k), a.frames[k].coordination);
   criteria.metrics = {"no_such_metric"};
   EXPECT_THROW(Pipeline(hand_made_run(), criteria), CriteriaError);
 }

@@ -37,6 +37,7 @@ Analysis busy_analysis() {
   Criteria criteria;
   criteria.measure = CompressiveMeasure::signed_;
   criteria.jam_force = 12.5;
+  criteria.metrics = {"bridge_strength", "fabric_anisotropy", "coordination", "bridge_strength"};
   Pipeline pipeline(hand_made_run(), criteria);
   for (unsigned k = 0; k < 20; ++k) {
     Snapshot frame = random_network(k, 40, 12);
@@ -56,6 +57,7 @@ bool same(double a, double b) {
 
 void expect_same_metrics(const Analysis& a, const Analysis& b) {
   ASSERT_EQ(a.metrics.size(), b.metrics.size());
+  EXPECT_EQ(a.criteria.metrics, b.criteria.metrics);
   for (std::size_t k = 0; k < a.metrics.size(); ++k) {
     EXPECT_EQ(a.metrics[k].name, b.metrics[k].name);
     EXPECT_EQ(a.metrics[k].unit, b.metrics[k].unit);

@@ -80,7 +80,7 @@ TEST(Communities, AreConnectedAndNumberedBySize) {
       const auto [a, b] = graph.snapshot().pp.row[c];
       inside[c] = found.label[a] == found.label[b];
     }
-    const Components parts = connected_components(graph, std::vector<std::uint8_t>(graph.vertex_count(), 1), inside);
+    const Components parts = connected_components(graph, inside);
     EXPECT_EQ(parts.label, found.label);
     EXPECT_EQ(parts.size, found.size);
   });

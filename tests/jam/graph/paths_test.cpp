@@ -92,6 +92,14 @@ TEST(BetweennessOfContacts, IsTheShareOfShortestPathsByLength) {
             expected += paths[s][v] * paths[v][t] / paths[s][t];
       EXPECT_NEAR(found.particle[v], expected, 1e-12 * std::max(1.0, expected));
     }
+    // Where no path leads through, none does: no rounding of a sum that cancels.
+    for (const Betweenness& by : {found, betweenness(graph)})
+      for (ContactGraph::Vertex v = 0; v < n; ++v) {
+        EXPECT_GE(by.particle[v], 0);
+        if (graph.degree(v) < 2) {
+          EXPECT_EQ(by.particle[v], 0);
+        }
+      }
     for (std::size_t c = 0; c < rows.size(); ++c) {
       double expected = 0;
       for (std::size_t s = 0; s < n; ++s)
