@@ -53,10 +53,24 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const
       ->allow_extra_args(false);
 }
 
+// One of some words. CLI11's own check speaks of its table of numbers.
+template <class Choice>
+CLI::Validator one_of(const std::map<std::string, Choice>& choices) {
+  return {[choices](std::string& text) -> std::string {
+            std::vector<std::string> words;
+            for (const auto& [word, choice] : choices) words.push_back(word);
+            const auto found = choices.find(text);
+            if (found == choices.end()) return fmt::format("'{}' is no choice{}", text, suggestion(text, words));
+            text = std::to_string(static_cast<int>(found->second));
+            return {};
+          },
+          ""};
+}
+
 void add_log_options(CLI::App& command, bool& quiet, LogFormat& format) {
   command.add_flag("-q,--quiet", quiet, "no progress, only warnings and errors");
   command.add_option("--log-format", format, "progress for people (text) or for machines (jsonl)")
-      ->transform(CLI::CheckedTransformer(log_formats).description(""))
+      ->transform(one_of(log_formats))
       ->type_name("text|jsonl");
 }
 
@@ -175,7 +189,7 @@ Command add_metrics(CLI::App& app, Options& o) {
                                                {"particles", MetricsOf::particles},
                                                {"contacts", MetricsOf::contacts}};
   c.add_option("--of", m.of, "a row for each of these (default: frames)")
-      ->transform(CLI::CheckedTransformer(parts).description(""))
+      ->transform(one_of(parts))
       ->type_name("frames|changes|particles|contacts");
   auto* const names = c.add_option("--metric", m.names, "names from the list below, separated by commas; default: those without *")
                           ->delimiter(',')
@@ -184,7 +198,7 @@ Command add_metrics(CLI::App& app, Options& o) {
   c.add_flag("--all", m.all, "all metrics of the list, those with * too")->excludes(names);
   const std::map<std::string, TableFormat> formats{{"csv", TableFormat::csv}, {"json", TableFormat::json}};
   c.add_option("--format", m.format, "csv or json")
-      ->transform(CLI::CheckedTransformer(formats).description(""))
+      ->transform(one_of(formats))
       ->type_name("csv|json");
   c.footer(metric_list() +
            "\nExamples:\n  jamscope metrics run/run.h5 --metric coordination,bridge_strength > bridge.csv\n"

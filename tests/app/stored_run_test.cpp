@@ -247,6 +247,9 @@ TEST(Metrics, OfEveryKindAreTheSameForAnyNumberOfThreadsAndSayWhereTheyAreNotDef
     }
   }
   EXPECT_EQ(run_program("metrics " + dump + " --all --metric coordination").code, 2);
+  const Outcome wrong = run_program("metrics " + dump + " --of change");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("--of: 'change' is no choice; did you mean 'changes'?"));
 }
 
 TEST(Analyze, IsTheSameForAnyNumberOfThreads) {
