@@ -17,8 +17,8 @@ struct MaxFlow {
   std::vector<std::uint32_t> cut_pp, cut_pw;  // contacts of the cut, ascending: between the sides; with the wall of the other side
 };
 
-// Capacities >= 0, [C] and [W]; those of walls that are neither blade nor vessel do not matter. Boykov and Kolmogorov, IEEE Trans.
-// Pattern Anal. 26, 1124, 2004, as Boost has it. Sums of many fractions leave a rounding of 1e-12 of the value.
+// Capacities >= 0, [C] and [W]; those of walls that are neither blade nor vessel do not matter. The cut is found with capacities
+// rounded to 2^-60 of what blade or vessel are pressed with in all (minimum_cut.hpp); the value is the sum of the cut's.
 MaxFlow max_flow(const ContactGraph& graph, std::span<const double> pp_capacity, std::span<const double> pw_capacity);
 
 // Capacity: the repulsive normal force, N.

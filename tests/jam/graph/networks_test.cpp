@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "libjam/graph/betweenness.hpp"
@@ -14,6 +17,7 @@
 #include "libjam/graph/core_numbers.hpp"
 #include "libjam/graph/cycle_basis.hpp"
 #include "libjam/graph/max_flow.hpp"
+#include "libjam/graph/minimum_cut.hpp"
 #include "libjam/graph/rattlers.hpp"
 #include "libjam/graph/triangles.hpp"
 #include "libjam/graph/widest_path.hpp"
@@ -27,6 +31,7 @@ using hand_made::for_random_networks;
 using hand_made::hand_made_run;
 using hand_made::Network;
 using hand_made::vessel_wall;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -120,6 +125,78 @@ TEST(MaxFlow, IsTheSmallestOfAllCutsAndNamesOne) {
     for (const std::uint32_t c : flow.cut_pw) named += pw[c];
     EXPECT_EQ(named, smallest);
   });
+}
+
+// The least particle side is as good as the whole flow: where the vessel is not pressed at all, nothing flows and nothing is cut.
+TEST(MaxFlow, IsNothingWhereOneEndIsNotPressed) {
+  for (const auto wall : {blade_wall, vessel_wall}) {
+    const Snapshot s = Network().press(0, wall, 5).touch(0, 1, 3).snapshot();
+    const MaxFlow flow = max_force_flow(ContactGraph(s, hand_made_run().walls));
+    EXPECT_EQ(flow.value, 0);
+    EXPECT_TRUE(flow.cut_pp.empty() && flow.cut_pw.empty());
+    EXPECT_THAT(flow.blade_side, Each(wall == blade_wall));
+  }
+}
+
+// Any directed network, with double links and links of one way, against Boost.Graph's Boykov-Kolmogorov.
+TEST(MinimumCut, IsBoostsMaximumFlow) {
+  using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;
+  struct Arc {
+    std::int64_t capacity = 0, residual = 0;
+    Traits::edge_descriptor reverse;
+  };
+  struct Node {
+    boost::default_color_type color{};
+    std::int64_t distance = 0;
+    Traits::edge_descriptor predecessor;
+  };
+  std::mt19937_64 random(7);
+  for (int scene = 0; scene < 300; ++scene) {
+    const std::uint32_t nodes = 2 + std::uint32_t(random() % 60);
+    std::vector<FlowLink> links;
+    for (std::size_t k = random() % (4 * nodes); k-- > 0;) {
+      FlowLink link{std::uint32_t(random() % nodes), std::uint32_t(random() % nodes), 0, 0};
+      link.forth = std::int64_t(random() % 3 == 0 ? 0 : random() >> (3 + random() % 50));
+      link.back = std::int64_t(random() % 3 == 0 ? 0 : random() >> (3 + random() % 50));
+      if (link.from != link.to) links.push_back(link);
+    }
+    boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, Node, Arc> network(nodes);
+    std::int64_t into_sink = 0;
+    for (FlowLink& link : links) {
+      link.forth /= std::int64_t(links.size()), link.back /= std::int64_t(links.size());
+      into_sink += link.to == 1 ? link.forth : link.from == 1 ? link.back : 0;
+      const auto there = add_edge(link.from, link.to, Arc{link.forth, 0, {}}, network).first;
+      const auto home = add_edge(link.to, link.from, Arc{link.back, 0, there}, network).first;
+      network[there].reverse = home;
+    }
+    const std::int64_t expected = boost::boykov_kolmogorov_max_flow(
+        network, get(&Arc::capacity, network), get(&Arc::residual, network), get(&Arc::reverse, network),
+        get(&Node::predecessor, network), get(&Node::color, network), get(&Node::distance, network),
+        get(boost::vertex_index, network), 0, 1);
+    const MinimumCut cut = minimum_cut(nodes, links, 0, 1);
+    EXPECT_EQ(cut.value, expected);
+    EXPECT_TRUE(cut.source_side[0] == 1 && cut.source_side[1] == 0);
+    std::int64_t across = 0;
+    for (const FlowLink& link : links) {
+      if (cut.source_side[link.from] && !cut.source_side[link.to]) across += link.forth;
+      if (cut.source_side[link.to] && !cut.source_side[link.from]) across += link.back;
+    }
+    EXPECT_EQ(across, cut.value);
+    EXPECT_LE(cut.value, into_sink);
+    // The smallest such side: reached from the source where flow can still go, by Boost's residuals.
+    std::vector<std::uint8_t> reached(nodes, 0);
+    std::vector<std::uint32_t> front{0};
+    reached[0] = 1;
+    while (!front.empty()) {
+      const std::uint32_t v = front.back();
+      front.pop_back();
+      for (auto [e, end] = out_edges(v, network); e != end; ++e) {
+        const std::uint32_t to = std::uint32_t(target(*e, network));
+        if (!reached[to] && network[*e].residual > 0) reached[to] = 1, front.push_back(to);
+      }
+    }
+    EXPECT_EQ(cut.source_side, reached);
+  }
 }
 
 TEST(DisjointLoadPaths, AreAsManyAsContactsOrParticlesPartBladeAndVessel) {
