@@ -133,6 +133,8 @@ ExaminedFrame Pipeline::examine(const Snapshot& snapshot, std::size_t frame) con
   found.power = info_.wall_loads_known ? power_from_wall_loads(snapshot, info_.walls) : power_from_wall_contacts(snapshot, info_.walls);
   found.blade_moves = any_blade_moves(snapshot, info_.walls);
   found.recovered_contacts = recovered(snapshot.pw);
+  found.ages_pp = ages(snapshot.pp.birth_step, snapshot.step);
+  found.ages_pw = ages(snapshot.pw.birth_step, snapshot.step);
   found.tangential_forces_missing = !present(snapshot.pw.tangential_force, snapshot.pw.size());
   return found;
 }
@@ -147,6 +149,8 @@ const FrameSummary& Pipeline::add(ExaminedFrame frame) {
   frame_power_.push_back(frame.power);
   blade_moved_ = blade_moved_ || frame.blade_moves;
   recovered_contacts_ += frame.recovered_contacts;
+  ages_pp_ = frame.ages_pp;
+  ages_pw_ = frame.ages_pw;
   tangential_forces_missing_ = tangential_forces_missing_ || frame.tangential_forces_missing;
   return analysis_.frames.back();
 }
@@ -188,6 +192,7 @@ Analysis Pipeline::finish(const Series& series) const {
     note(recovered_contacts_, " contacts with walls are not in the source and were recovered from force balances");
   }
 
+  a.contact_life = contact_life(series, ages_pp_, ages_pw_, info_.dt);
   if (series_has_power(series, info_.walls)) {
     const double begin = a.frames.empty() ? 0.0 : a.frames.front().time;
     a.flow_energy = flow_energy_from_series(series, info_.walls, begin);

@@ -16,6 +16,7 @@
 #include "libjam/jamming/cluster.hpp"
 #include "libjam/jamming/criteria.hpp"
 #include "libjam/snapshot/snapshot.hpp"
+#include "libjam/statistics/contact_life.hpp"
 #include "libjam/statistics/flow_energy.hpp"
 #include "libjam/statistics/survival.hpp"
 
@@ -57,6 +58,7 @@ struct Analysis {
   double jam_frequency = 0;                     // 1/s
   double jammed_in_gap_share = 0;  // of all jammed particle samples; NaN where there are none or the gap is not known
   FlowEnergy flow_energy;
+  std::vector<ContactLife> contact_life;  // by octaves of life; empty where the source does not follow contacts from step to step
   std::vector<std::string> notes;  // what could not be computed from this data, and why
 };
 
@@ -72,6 +74,7 @@ struct ExaminedFrame {
   double power = 0;             // W of the blades, from wall loads where known, else from contacts; NaN where neither
   bool blade_moves = false, tangential_forces_missing = false;
   std::size_t recovered_contacts = 0;
+  Series::EndedContacts ages_pp{}, ages_pw{};  // contacts by age
 };
 
 class Pipeline {
@@ -99,6 +102,7 @@ class Pipeline {
   std::vector<double> frame_power_;  // ExaminedFrame::power of each
   std::size_t events_so_far_ = 0;
   std::size_t recovered_contacts_ = 0;
+  Series::EndedContacts ages_pp_{}, ages_pw_{};  // of the last frame
   bool blade_moved_ = false, tangential_forces_missing_ = false;
 };
 

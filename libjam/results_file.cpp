@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* format_name = "jamscope-analysis";
 using Version = std::array<std::uint32_t, 2>;
-constexpr Version schema_version{1, 1};  // a larger second number only adds items
+constexpr Version schema_version{1, 2};  // a larger second number only adds items
 
 // The columns of each table are listed once, in a function that hands name, member, unit and doc to a visitor. Writing
 // and reading are two visitors, so they cannot disagree. To store one more member: add its line to the list.
@@ -80,6 +80,39 @@ void columns_of(SurvivalClass*, Visit&& column) {
   column("events", &SurvivalClass::events, "1", "global events in the class");
   column("frequency", &SurvivalClass::frequency, "1/s", "events over observed time");
   column("share_of_jam_time", &SurvivalClass::share_of_jam_time, "1", "of the summed survival times");
+}
+
+// One octave of life, flat.
+struct ContactLifeRow {
+  double from = 0, to = 0;
+  std::uint32_t ended_pp = 0, alive_pp = 0, ended_pw = 0, alive_pw = 0;
+  double together_pp = 0, together_pw = 0;
+};
+
+template <class Visit>
+void columns_of(ContactLifeRow*, Visit&& column) {
+  column("from", &ContactLifeRow::from, "s", "life of a contact from here");
+  column("to", &ContactLifeRow::to, "s", "to below here");
+  column("ended_pp", &ContactLifeRow::ended_pp, "1", "contacts of particles that lasted so long");
+  column("alive_pp", &ContactLifeRow::alive_pp, "1", "contacts of particles that are so old in the last frame");
+  column("together_pp", &ContactLifeRow::together_pp, "1", "share of contacts of particles that is still there at `from`");
+  column("ended_pw", &ContactLifeRow::ended_pw, "1", "contacts with walls that lasted so long");
+  column("alive_pw", &ContactLifeRow::alive_pw, "1", "contacts with walls that are so old in the last frame");
+  column("together_pw", &ContactLifeRow::together_pw, "1", "share of contacts with walls that is still there at `from`");
+}
+
+std::vector<ContactLifeRow> rows_of(const std::vector<ContactLife>& life) {
+  std::vector<ContactLifeRow> rows;
+  for (const ContactLife& l : life)
+    rows.push_back({l.from, l.to, l.particles.ended, l.particles.alive, l.walls.ended, l.walls.alive, l.particles.together, l.walls.together});
+  return rows;
+}
+
+std::vector<ContactLife> life_of(const std::vector<ContactLifeRow>& rows) {
+  std::vector<ContactLife> life;
+  for (const ContactLifeRow& r : rows)
+    life.push_back({r.from, r.to, {r.ended_pp, r.alive_pp, r.together_pp}, {r.ended_pw, r.alive_pw, r.together_pw}});
+  return life;
 }
 
 template <class Visit>
@@ -359,6 +392,7 @@ void write_results(const std::filesystem::path& path, const Analysis& analysis, 
     write_table(file, "/survival_classes", analysis.survival_classes);
     file.write("/jammed_histogram/frames", analysis.jammed_histogram, "1", "row n: frames with n jammed particles");
     write_flow_energy(file, analysis.flow_energy);
+    if (!analysis.contact_life.empty()) write_table(file, "/contact_life", rows_of(analysis.contact_life));
     file.write_texts("/notes", analysis.notes, "what could not be computed from this data, and why");
   });
 }
@@ -386,6 +420,7 @@ Analysis read_results(const std::filesystem::path& path) {
   analysis.survival_classes = read_table<SurvivalClass>(file, "/survival_classes");
   analysis.jammed_histogram = file.read<std::uint32_t>("/jammed_histogram/frames");
   analysis.flow_energy = read_flow_energy(file);
+  if (file.exists("/contact_life")) analysis.contact_life = life_of(read_table<ContactLifeRow>(file, "/contact_life"));
   analysis.notes = file.read_texts("/notes");
   check_frame_rows(file, analysis);
   return analysis;

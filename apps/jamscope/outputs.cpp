@@ -121,6 +121,10 @@ Json event_json(const jam::JamEvent& e) {
           {"members", e.members}};
 }
 
+Json life_json(const jam::ContactLife::Kind& kind) {
+  return {{"together", number(kind.together)}, {"ended", kind.ended}, {"alive", kind.alive}};
+}
+
 Json analysis_json(const jam::Analysis& a) {
   Json json;
   Json bounds = Json::array();
@@ -167,6 +171,14 @@ Json analysis_json(const jam::Analysis& a) {
                                         {"share_of_jam_time", number(c.share_of_jam_time)}});
   json["frames_by_jammed_particles"] = a.jammed_histogram;
   json["flow_energy"] = {{"source", a.flow_energy.source}, {"total_J", number(a.flow_energy.total)}};
+  if (!a.contact_life.empty()) {
+    Json& life = json["contact_life"];
+    life["median_s"] = {{"particles", number(jam::median_life(a.contact_life, &jam::ContactLife::particles))},
+                        {"walls", number(jam::median_life(a.contact_life, &jam::ContactLife::walls))}};
+    life["octaves"] = Json::array();
+    for (const jam::ContactLife& l : a.contact_life)
+      life["octaves"].push_back({{"from_s", l.from}, {"particles", life_json(l.particles)}, {"walls", life_json(l.walls)}});
+  }
   json["first_events"] = Json::array();
   for (std::size_t e = 0; e < std::min(events_in_summary, a.events.size()); ++e)
     json["first_events"].push_back(event_json(a.events[e]));

@@ -198,6 +198,8 @@ void append(jam::Series& series, const dem::Window& window) {
   series.jammed_count.push_back(window.most_watched);
   series.kinetic_energy.push_back(window.kinetic_energy);
   series.largest_overlap.push_back(window.largest_overlap);
+  series.ended_pp.push_back(window.ended_pairs.count);
+  series.ended_pw.push_back(window.ended_wall_pairs.count);
   series.walls.resize(window.walls.size());
   for (std::size_t w = 0; w < window.walls.size(); ++w) {
     const dem::Window::Load& load = window.walls[w];

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "libdem/contact/ended_contacts.hpp"
 #include "libdem/contact/ledger.hpp"
 #include "libdem/contact/levels.hpp"
 #include "libdem/contact/pair_constants.hpp"
@@ -81,6 +82,7 @@ struct PairContacts {
     double largest_overlap = 0;  // over the smaller radius
     LedgerSums ledger;
     Evaluations evaluations;
+    EndedContacts ended;
     std::vector<PairForce> recorded;  // by lane, of the last evaluation that recorded
   };
   std::vector<Chunk> chunk;
@@ -133,6 +135,7 @@ struct WallContacts {
     double largest_overlap = 0;
     LedgerSums ledger;
     Evaluations evaluations;
+    EndedContacts ended;
     bool overflow = false;
     std::vector<WallTouch> touches;  // working space
     std::vector<MeshTouch> scratch;

@@ -279,7 +279,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
 template <class Law, bool Keep>
 inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::size_t lane,
                            const LaneTouch& lanes, double advance, double steps, bool crosses, const ForceOutput& out,
-                           Pack& largest_overlap, LedgerSums& sums, std::vector<PairForce>& recorded) {
+                           Pack& largest_overlap, LedgerSums& sums, PairContacts::Chunk& chunk) {
   Block& block = pairs.block[number];
   const Touch<Pack>& touch = lanes.touch;
   const PairConstants<Pack>& c = lanes.constants;
@@ -294,10 +294,12 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   store(only(hold, springs.contact_radius), block.contact_radius, lane);
   if (rolling_spring) store(only(hold, springs.rolling), pairs.rolling[number].torque, lane);
   const std::size_t first_lane = PairContacts::width * number + lane;
-  const Mask<Pack> formed = hold && !touched;
-  if (any_of(formed))
-    for (std::size_t k = 0; k < pack_width; ++k)
-      if (formed[k]) pairs.birth_step[first_lane + k] = in.step;
+  if (any_of(hold != touched))
+    for (std::size_t k = 0; k < pack_width; ++k) {
+      std::uint64_t& birth_step = pairs.birth_step[first_lane + k];
+      if (hold[k] && !touched[k]) birth_step = in.step;
+      if (touched[k] && !hold[k]) chunk.ended.add(birth_step, in.step);
+    }
 
   const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
   const Pack pushed = f.normal.elastic + f.damping;
@@ -323,7 +325,7 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   if (in.record)
     for (std::size_t k = 0; k < pack_width; ++k)
       if (hold[k])
-        recorded.push_back({std::uint32_t(first_lane + k), f.tangential.sliding[k], lane_of(tangential, k), f.normal.elastic[k],
+        chunk.recorded.push_back({std::uint32_t(first_lane + k), f.tangential.sliding[k], lane_of(tangential, k), f.normal.elastic[k],
                             f.damping[k]});
   return any_of(hold);
 }
@@ -343,7 +345,7 @@ inline void prefetch(const ForceInput& in, const Block& block, const ForceOutput
 template <class Law, bool Keep>
 JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, bool woken,
                                      bool crosses, const ForceOutput& out, Pack& largest_overlap, LedgerSums& sums,
-                                     std::vector<PairForce>& recorded) {
+                                     PairContacts::Chunk& chunk) {
   constexpr std::size_t packs = PairContacts::width / pack_width;
   const Block& block = pairs.block[number];
   Activity& activity = pairs.activity[number];
@@ -367,7 +369,7 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
   activity.acts = false;
   for (std::size_t p = 0; p < packs; ++p)
     activity.acts |= evaluate_lanes<Law, Keep>(law, in, pairs, number, p * pack_width, lanes[p], advance, steps, crosses, out,
-                                           largest_overlap, sums, recorded);
+                                           largest_overlap, sums, chunk);
 }
 
 template <class Law, bool Keep>
@@ -376,6 +378,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
   Pack largest_overlap = 0.0;
   LedgerSums sums;
   Evaluations evaluations;
+  chunk.ended = EndedContacts{};
   if (in.record) chunk.recorded.clear();
   for (std::uint32_t b = chunk.begin; b < chunk.end; ++b) {
     Activity& activity = pairs.activity[b];
@@ -401,7 +404,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
       continue;
     }
     if (b + 1 < chunk.end && pairs.activity[b + 1].acts) prefetch(in, pairs.block[b + 1], out);
-    evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk.recorded);
+    evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk);
     activity.wake = in.odometer;
     evaluations += {1, std::uint64_t{1} << activity.level, 0, 0};
   }
@@ -551,6 +554,7 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   for (std::size_t k = 0; k < count; ++k) {
     WallContact& contact = *slot[k].contact;
     if (!hold[k]) {
+      if (touched[k]) chunk.ended.add(contact.memory.birth_step, in.step);
       contact.memory = ContactMemory{};
       contact.rolling.setZero();
       continue;
@@ -621,6 +625,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
   chunk.largest_overlap = 0;
   chunk.ledger = LedgerSums{};
   chunk.evaluations = Evaluations{};
+  chunk.ended = EndedContacts{};
   const auto block = [&] { evaluate_wall_block<Law, Keep>(law, in, slot, count, chunk, out, sums); };
   for (std::uint32_t q = chunk.begin; q < chunk.end; ++q) {
     Activity& activity = walls.activity[q];
@@ -659,6 +664,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
     }
     const std::uint8_t before = activity.level;
     inherit(walls, candidate, touches, [&](const WallContact& ended, const LastForces& last) {
+      chunk.ended.add(ended.memory.birth_step, in.step);
       if constexpr (Keep)
         book_end(law, ended, last, constants_of(in, candidate, ended), grain, advance_of(in, before), chunk.ledger);
     });

@@ -217,7 +217,9 @@ struct Simulation::Engine {
     for (const std::uint32_t c : due_chunks) {
       window.largest_compressive_force = std::max(window.largest_compressive_force, pressed[c].largest);
       watched += pressed[c].watched;
+      window.ended_pairs += pairs.chunk[c].ended;
     }
+    for_each_due_wall_chunk([&](const WallContacts::Chunk& chunk) { window.ended_wall_pairs += chunk.ended; });
     if (all_due()) window.most_watched = std::max(window.most_watched, watched);
   }
   template <class Finish>

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libdem/case/case.hpp"
+#include "libdem/contact/ended_contacts.hpp"
 #include "libdem/contact/laws.hpp"
 #include "libdem/contact/ledger.hpp"
 #include "libdem/contact/levels.hpp"
@@ -165,6 +166,7 @@ struct Window {
   std::uint32_t most_watched = 0;  // largest number of grains above watch_force in a step at which all contacts are evaluated
   double largest_overlap = 0;                   // 1, overlap over radius
   double kinetic_energy = 0;                    // J, of last_step
+  EndedContacts ended_pairs, ended_wall_pairs;  // contacts that ended; with a wall: gave way to no other
   struct Load {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // mean
     Vec3 force_min, force_max, torque_min, torque_max;  // over the steps at which all contacts are evaluated

@@ -16,13 +16,11 @@ using Vertex = ContactGraph::Vertex;
 // (6 % faster in a packing; blocks of 3, 4 and 8 are slower).
 class Numbering {
  public:
-  struct Link {
-    std::uint32_t to, contact;
-  };
   static constexpr std::uint32_t block = 2;
-  std::vector<Vertex> vertex;         // [N] by number
-  std::vector<std::uint32_t> number;  // [N] by vertex
-  std::vector<Link> links;            // to numbers
+  std::vector<Vertex> vertex;              // [N] by number
+  std::vector<std::uint32_t> number;       // [N] by vertex
+  std::vector<std::uint32_t> first_link;   // [N + 1] by number, into the next two
+  std::vector<std::uint32_t> to, contact;  // of each link: a number, and which contact it is; apart, as searches often need but the first
 
   explicit Numbering(const ContactGraph& graph) : number(graph.vertex_count(), none) {
     const std::size_t n = graph.vertex_count();
@@ -38,21 +36,24 @@ class Numbering {
       for (std::size_t k = begin; k < vertex.size(); ++k)
         for (const ContactGraph::Neighbor& neighbor : graph.neighbors(vertex[k])) give(neighbor.vertex);
     }
-    first_.reserve(n + 1);
-    first_.push_back(0);
+    first_link.reserve(n + 1);
+    first_link.push_back(0);
     for (const Vertex v : vertex) {
-      for (const ContactGraph::Neighbor& neighbor : graph.neighbors(v)) links.push_back({number[neighbor.vertex], neighbor.contact});
-      while (links.size() % block != 0) links.push_back({std::uint32_t(n), 0});
-      first_.push_back(std::uint32_t(links.size()));
+      for (const ContactGraph::Neighbor& neighbor : graph.neighbors(v)) add_link(number[neighbor.vertex], neighbor.contact);
+      while (to.size() % block != 0) add_link(nobody(), 0);
+      first_link.push_back(std::uint32_t(to.size()));
     }
   }
   std::size_t size() const { return vertex.size(); }
   std::uint32_t nobody() const { return std::uint32_t(vertex.size()); }
-  std::span<const Link> links_of(std::uint32_t v) const { return {links.data() + first_[v], links.data() + first_[v + 1]}; }
 
  private:
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> first_;  // [N + 1] into links
+
+  void add_link(std::uint32_t to_number, std::uint32_t over_contact) {
+    to.push_back(to_number);
+    contact.push_back(over_contact);
+  }
 };
 
 constexpr std::uint32_t unreached = std::numeric_limits<std::uint32_t>::max();
@@ -80,7 +81,8 @@ class PathsByLength {
     for (std::size_t k = order_.size(); k-- > 0;) {
       const std::uint32_t u = order_[k];
       const double each = (wanted_[u] + node_[u].dependency) / node_[u].paths;
-      for (const auto [v, c] : net_.links_of(u)) {
+      for (std::uint32_t l = net_.first_link[u]; l < net_.first_link[u + 1]; ++l) {
+        const std::uint32_t v = net_.to[l], c = net_.contact[l];
         if (v == net_.nobody() || !leads(v, u, c)) continue;
         const double share = node_[v].paths * each;
         node_[v].dependency += share;
@@ -115,7 +117,8 @@ class PathsByLength {
       node_[v].rank = std::uint32_t(order_.size());
       order_.push_back(v);
       double paths = v == source;
-      for (const auto [u, c] : net_.links_of(v)) {
+      for (std::uint32_t l = net_.first_link[v]; l < net_.first_link[v + 1]; ++l) {
+        const std::uint32_t u = net_.to[l], c = net_.contact[l];
         if (u == net_.nobody() || !walkable(c)) continue;
         if (leads(u, v, c)) paths += node_[u].paths;
         const double reach = node_[v].away + length_[c];
@@ -141,17 +144,18 @@ class PathsByLength {
 class PathsByContacts {
  public:
   PathsByContacts(const Numbering& numbering, const std::vector<double>& wanted)
-      : net_(numbering), wanted_(wanted), node_(net_.size() + 1), order_(net_.size() + 1), steps_(net_.links.size() + 1),
+      : net_(numbering), wanted_(wanted), node_(net_.size() + 1), order_(net_.size() + 1), steps_(net_.to.size() + 1),
         each_(net_.size()) {
     node_[net_.nobody()].away = 0;
   }
 
   std::span<const std::uint32_t> order() const { return {order_.data(), reached_}; }  // nearest first, the source itself at the head
-  double dependency(std::uint32_t v) const { return node_[v].paths * each_[v].behind; }
+  // What was added to c_v on top of wanted_v/n_v: exactly nothing where nothing was.
+  double dependency(std::uint32_t v) const { return node_[v].paths * (each_[v] - wanted_[v] / node_[v].paths); }
 
   void from(std::uint32_t source) {
     start(source);
-    walk([](std::size_t, std::uint32_t) {});
+    walk([](std::size_t, std::size_t) {});
     hand_back([](std::size_t, double) {});
   }
   // over(contact, share) for each contact on a path.
@@ -159,7 +163,7 @@ class PathsByContacts {
   void from(std::uint32_t source, Over over) {
     start(source);
     step_contact_.resize(steps_.size());
-    walk([contacts = step_contact_.data()](std::size_t step, std::uint32_t contact) { contacts[step] = contact; });
+    walk([this](std::size_t step, std::size_t link) { step_contact_[step] = net_.contact[link]; });
     hand_back([&](std::size_t step, double share) { over(step_contact_[step], share); });
   }
 
@@ -171,31 +175,26 @@ class PathsByContacts {
   struct Step {
     std::uint32_t from, to;
   };
-  // c, for each of the paths to a particle: what ends there, and what leads through it.
-  struct Each {
-    double own = 0, behind = 0;
-  };
-
   void start(std::uint32_t source) {
     for (const std::uint32_t v : order()) node_[v] = {};
     order_[0] = source;
     node_[source] = {1, 0};
   }
 
-  // keep(step, contact) for each link that may be a step; the next one takes its place if it is none.
+  // keep(step, link) for each link that may be a step; the next one takes its place if it is none.
   template <class Keep>
   void walk(Keep keep) {
     Node* const node = node_.data();
     std::uint32_t* const order = order_.data();
     Step* const steps = steps_.data();
+    const std::uint32_t *const first_link = net_.first_link.data(), *const to_of = net_.to.data();
     std::size_t reached = 1, step = 0;
     for (std::size_t k = 0; k < reached; ++k) {
       const std::uint32_t v = order[k], next = node[v].away + 1;
       const double paths = node[v].paths;
-      const std::span<const Numbering::Link> links = net_.links_of(v);
-      for (const Numbering::Link *link = links.data(), *const end = link + links.size(); link != end; link += Numbering::block)
+      for (const std::uint32_t *link = to_of + first_link[v], *const end = to_of + first_link[v + 1]; link != end; link += Numbering::block)
         for (std::uint32_t l = 0; l < Numbering::block; ++l) {
-          const std::uint32_t u = link[l].to;
+          const std::uint32_t u = link[l];
           Node& to = node[u];
           order[reached] = u;
           reached += to.away == unreached;
@@ -204,7 +203,7 @@ class PathsByContacts {
           to.away = away;
           to.paths += double(ahead) * paths;
           steps[step] = {v, u};
-          keep(step, link[l].contact);
+          keep(step, std::size_t(link + l - to_of));
           step += ahead;
         }
     }
@@ -215,12 +214,12 @@ class PathsByContacts {
   // Back from the farthest: all steps from a particle are behind all steps to it. over(step, share) for each.
   template <class Over>
   void hand_back(Over over) {
-    Each* const each = each_.data();
-    for (const std::uint32_t v : order()) each[v] = {wanted_[v] / node_[v].paths, 0};
+    double* const each = each_.data();
+    for (const std::uint32_t v : order()) each[v] = wanted_[v] / node_[v].paths;
     for (std::size_t s = steps_taken_; s-- > 0;) {
       const auto [v, u] = steps_[s];
-      const double ahead = each[u].own + each[u].behind;
-      each[v].behind += ahead;
+      const double ahead = each[u];
+      each[v] += ahead;
       over(s, node_[v].paths * ahead);
     }
   }
@@ -231,7 +230,7 @@ class PathsByContacts {
   std::vector<std::uint32_t> order_;
   std::vector<Step> steps_;                  // on shortest paths, away from the source
   std::vector<std::uint32_t> step_contact_;  // over which contact, where that is asked for
-  std::vector<Each> each_;
+  std::vector<double> each_;                 // c, for each of the paths to a particle: what ends there, and what leads through it
   std::size_t reached_ = 0, steps_taken_ = 0;
 };
 

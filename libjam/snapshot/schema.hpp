@@ -1,4 +1,4 @@
-// The snapshot file, schema 1.1, as one table. Writer, reader, validation, inspection and SCHEMA.md all follow it.
+// The snapshot file, schema 1.2, as one table. Writer, reader, validation, inspection and SCHEMA.md all follow it.
 // SCHEMA.md says in prose what the table cannot: the append protocol, the checksum, the compatibility rule.
 #pragma once
 #include <array>
@@ -12,7 +12,7 @@
 namespace jam::schema {
 
 inline constexpr std::string_view format = "jamscope-snapshots";
-inline constexpr std::array<std::uint32_t, 2> version{1, 1};  // a larger second number only adds optional items
+inline constexpr std::array<std::uint32_t, 2> version{1, 2};  // a larger second number only adds optional items
 
 // What the rows of an item are.
 enum class Axis : std::uint8_t {
@@ -155,6 +155,9 @@ inline constexpr Item table[] = {
     {"/series/jammed_count", T::u4, 1, series, optional, "1", "most particles above the threshold in one step"},
     {"/series/kinetic_energy", T::f8, 1, series, optional, "J", "at the end of the window"},
     {"/series/largest_overlap", T::f8, 1, series, optional, "1", "overlap over particle radius, over the window"},
+    {"/series/ended_pp", T::u4, 32, series, optional, "1",
+     "contacts of particles that ended: lasted 2^k <= steps < 2^(k+1), column 31: was there when the run began"},
+    {"/series/ended_pw", T::u4, 32, series, optional, "1", "the same of contacts with walls"},
     {"/series/energy/kinetic", T::f8, 1, series, optional, "J", "kinetic energy of translation, of the leapfrog scheme"},
     {"/series/energy/rotational", T::f8, 1, series, optional, "J", "kinetic energy of rotation"},
     {"/series/energy/gravitational", T::f8, 1, series, optional, "J", "-m g.x"},
@@ -298,6 +301,8 @@ void visit_series(S& s, F&& f) {
   f(column<std::uint32_t>("/series/jammed_count"), s.jammed_count);
   f(column<double>("/series/kinetic_energy"), s.kinetic_energy);
   f(column<double>("/series/largest_overlap"), s.largest_overlap);
+  f(column<Series::EndedContacts>("/series/ended_pp"), s.ended_pp);
+  f(column<Series::EndedContacts>("/series/ended_pw"), s.ended_pw);
   f(column<double>("/series/energy/kinetic"), s.energy.kinetic);
   f(column<double>("/series/energy/rotational"), s.energy.rotational);
   f(column<double>("/series/energy/gravitational"), s.energy.gravitational);

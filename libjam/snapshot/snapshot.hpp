@@ -163,6 +163,10 @@ struct Series {
   std::vector<std::uint32_t> jammed_count;       // [S] largest number of particles above the threshold in one step
   std::vector<double> kinetic_energy;            // [S] J at the end of the window
   std::vector<double> largest_overlap;           // [S] overlap over particle radius, maximum over the window
+  // [S] contacts that ended within the window, by the octave of their life: column k lasted 2^k steps or more and less than 2^(k+1),
+  // the last one was there when the run began; or absent. What slips from one triangle of a wall to the next goes on.
+  using EndedContacts = std::array<std::uint32_t, 32>;
+  std::vector<EndedContacts> ended_pp, ended_pw;
   // [S] J at the end of the window, or absent: where the energy is, then where it went since the start of the run.
   struct Energy {
     std::vector<double> kinetic, rotational;  // of the leapfrog scheme

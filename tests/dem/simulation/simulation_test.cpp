@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <numeric>
+#include <set>
 
 #include "libdem/errors.hpp"
 #include "libdem/particles/grain_rows.hpp"
@@ -92,6 +96,50 @@ TEST(Simulation, ContinuesFromAnyStateExactly) {
   EXPECT_GT(built, 3u);
   EXPECT_GT(whole.contacts(), 10u);
   expect_same_bytes(whole.state(), part.state());
+}
+
+// Each step's contacts beside those of the step before: what has gone, and for how many steps it was there. Windows of any length, over
+// rebuilt lists and a restart, hold the same counts; contacts of the start count as of unknown age.
+TEST(Simulation, CountsHowLongEndedContactsLasted) {
+  omp_set_num_threads(1);
+  const Particles grains = support::packed_cube(6, 1e-7, 1.0, 11);
+  Simulation single(boxed(2.9e-3), fresh(grains)), whole(boxed(2.9e-3), fresh(grains));
+  using Key = std::array<std::uint64_t, 3>;  // row, row or wall, birth
+  std::set<Key> pairs, wall_pairs;
+  EndedContacts ended, ended_with_walls, counted, counted_with_walls;
+  const auto note = [](std::set<Key>& before, const std::set<Key>& now, std::uint64_t step, EndedContacts& sum) {
+    for (const Key& key : before)
+      if (!now.contains(key)) sum.add(key[2], step);
+    before = now;
+  };
+  constexpr std::uint64_t steps = 2500;
+  for (std::uint64_t k = 0; k <= steps; ++k) {
+    if (k > 0) single.advance(1);
+    const View view = single.view();
+    std::set<Key> now, now_with_walls;
+    for (const PairRecord& c : view.pairs) now.insert({c.i, c.j, c.birth_step});
+    for (const WallRecord& c : view.wall_pairs) now_with_walls.insert({c.i, c.wall, c.birth_step});
+    note(pairs, now, k, ended);
+    note(wall_pairs, now_with_walls, k, ended_with_walls);
+  }
+  const auto take = [&] {
+    const Window window = whole.take_window();
+    counted += window.ended_pairs;
+    counted_with_walls += window.ended_wall_pairs;
+  };
+  for (const std::uint64_t stop : {1, 999, 500}) {
+    whole.advance(stop);
+    take();
+  }
+  whole = Simulation(whole.setup(), whole.state());
+  whole.advance(steps - 1500);
+  take();
+  EXPECT_EQ(counted.count, ended.count);
+  EXPECT_EQ(counted_with_walls.count, ended_with_walls.count);
+  // 630 contacts at the start; by now nearly all of them and many others have ended, over several octaves.
+  EXPECT_GT(ended.count[EndedContacts::octaves], 300u);
+  EXPECT_GT(std::count_if(ended.count.begin(), ended.count.end() - 1, [](std::uint32_t n) { return n > 0; }), 3);
+  EXPECT_GT(std::accumulate(ended_with_walls.count.begin(), ended_with_walls.count.end() - 1, 0u), 20u);
 }
 
 TEST(Simulation, RefusesAStateThatDoesNotFitTogether) {

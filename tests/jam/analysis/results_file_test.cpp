@@ -47,7 +47,9 @@ Analysis busy_analysis() {
     frame.walls[hand_made::blade_wall].force = Vec3(0, 0, 1.0 / (k + 1));
     pipeline.add(frame);
   }
-  return pipeline.finish({});
+  Analysis analysis = pipeline.finish({});
+  analysis.contact_life = {{1e-6, 2e-6, {3, 4, 1.0}, {0, 2, std::nan("")}}, {2e-6, 4e-6, {5, 6, 0.75}, {7, 8, 0.5}}};
+  return analysis;
 }
 
 // NaN equals NaN here: the same bits must come back.
@@ -154,6 +156,16 @@ void expect_same(const Analysis& a, const Analysis& b) {
   EXPECT_EQ(a.flow_energy.power, b.flow_energy.power);
   EXPECT_EQ(a.flow_energy.energy, b.flow_energy.energy);
   EXPECT_EQ(a.flow_energy.total, b.flow_energy.total);
+  ASSERT_EQ(a.contact_life.size(), b.contact_life.size());
+  for (std::size_t k = 0; k < a.contact_life.size(); ++k) {
+    EXPECT_EQ(a.contact_life[k].from, b.contact_life[k].from);
+    EXPECT_EQ(a.contact_life[k].to, b.contact_life[k].to);
+    for (const auto kind : {&ContactLife::particles, &ContactLife::walls}) {
+      EXPECT_EQ((a.contact_life[k].*kind).ended, (b.contact_life[k].*kind).ended);
+      EXPECT_EQ((a.contact_life[k].*kind).alive, (b.contact_life[k].*kind).alive);
+      EXPECT_TRUE(same((a.contact_life[k].*kind).together, (b.contact_life[k].*kind).together));
+    }
+  }
 }
 
 TEST_F(ResultsFileTest, GivesBackTheSameAnalysisBitByBit) {

@@ -37,7 +37,7 @@ TEST_F(Inspect, AGoodFileIsDescribed) {
   EXPECT_TRUE(r.valid());
   EXPECT_EQ(r.path, path.string());
   EXPECT_EQ(r.format, "jamscope-snapshots");
-  EXPECT_EQ(r.version, "1.1");
+  EXPECT_EQ(r.version, "1.2");
   EXPECT_EQ(r.bytes, std::filesystem::file_size(path));
   EXPECT_TRUE(r.closed);
   EXPECT_EQ(r.frames, 4U);

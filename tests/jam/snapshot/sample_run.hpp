@@ -149,7 +149,7 @@ inline Series series(std::size_t k) {
       if constexpr (std::is_arithmetic_v<V>) {
         value = static_cast<V>(100 * real());
       } else {
-        for (double& x : value) x = real();
+        for (auto& x : value) x = static_cast<std::decay_t<decltype(x)>>(100 * real());
       }
       values.push_back(value);
     };
