@@ -17,7 +17,7 @@ namespace {
 using Vec3 = dem::Vec3;
 constexpr const char* checkpoint_format = "jamscope-checkpoint";
 constexpr const char* bed_format = "jamscope-bed";
-constexpr std::uint32_t state_version = 4;
+constexpr std::uint32_t state_version = 5;
 
 // TABLES of what a state file stores of each row of a struct: data set, member, unit, meaning. A new member is one row here.
 template <class Row, class Value>
@@ -52,6 +52,21 @@ constexpr std::tuple wall_pair_columns{
     Column{"distance", &WallPair::distance, "m", "from the grain's centre to the wall"},
     Column{"curvature", &WallPair::curvature, "1/m", "principal curvatures of the wall, > 0 where it is hollow"},
     Column{"level", &WallPair::level, "1", "evaluated every 2^level steps"},
+};
+using dem::Excursion;
+constexpr std::tuple excursion_columns{
+    Column{"id", &Excursion::id, "1", "of the grain"},
+    Column{"first_step", &Excursion::first_step, "1", "first step above the watched force"},
+    Column{"last_step", &Excursion::last_step, "1", "last step above, so far"},
+    Column{"peak_step", &Excursion::peak_step, "1", "step of the largest force"},
+    Column{"peak_force", &Excursion::peak_force, "N", "largest compressive force"},
+    Column{"impulse", &Excursion::impulse, "N s", "integral of the compressive force"},
+    Column{"work", &Excursion::work, "J", "that walls did on the grain"},
+    Column{"path", &Excursion::path, "m", "integral of the speed"},
+    Column{"turned", &Excursion::turned, "rad", "integral of the angular speed"},
+    Column{"first_position", &Excursion::first_position, "m", "centre in the first step"},
+    Column{"peak_position", &Excursion::peak_position, "m", "centre at the largest force"},
+    Column{"last_position", &Excursion::last_position, "m", "centre in the last step"},
 };
 // Of the evaluation before; the ledger needs them.
 constexpr std::tuple last_columns{
@@ -169,6 +184,7 @@ void write_state(jam::h5::File& f, const dem::State& s) {
   write_arrays(f, "/state/particles/", s, force_arrays);
   write_columns(f, "/state/pairs/", s.pairs, pair_columns);
   write_columns(f, "/state/walls/", s.wall_pairs, wall_pair_columns);
+  write_columns(f, "/state/excursions/", s.excursions, excursion_columns);
   if (!s.force.empty()) {
     const Layout& layout = s.layout;
     f.make_group("/state/layout");
@@ -206,6 +222,7 @@ dem::State read_state(const jam::h5::File& f) {
     if (size != n) f.fail("/state/particles", "columns of different length, expected " + std::to_string(n) + " rows");
   read_columns(f, "/state/pairs/", s.pairs, pair_columns);
   read_columns(f, "/state/walls/", s.wall_pairs, wall_pair_columns);
+  read_columns(f, "/state/excursions/", s.excursions, excursion_columns);
   if (f.exists("/state/layout")) {
     Layout& layout = s.layout;
     layout.listed_step = f.attribute<std::uint64_t>("/state/layout", "listed_step");
@@ -242,6 +259,9 @@ void write_series(jam::h5::File& f, const jam::Series& s) {
   f.set_attribute("/pending", "walls", std::uint32_t(s.walls.size()));
   for (std::size_t w = 0; w < s.walls.size(); ++w)
     jam::schema::visit_wall_series(s.walls[w], [&](const auto& item, const auto& values) { write(item, values, w); });
+  jam::schema::visit_excursions(s.excursions, [&](const auto& item, const auto& values) {
+    f.write("/pending" + std::string(item.path), values, std::string(item.unit), std::string(item.doc));
+  });
 }
 
 jam::Series read_series(const jam::h5::File& f) {
@@ -255,6 +275,9 @@ jam::Series read_series(const jam::h5::File& f) {
   s.walls.resize(walls);
   for (std::size_t w = 0; w < walls; ++w)
     jam::schema::visit_wall_series(s.walls[w], [&](const auto& item, auto& values) { read(item, values, w); });
+  jam::schema::visit_excursions(s.excursions, [&]<class V>(const auto& item, std::vector<V>& values) {
+    values = f.read<V>("/pending" + std::string(item.path));
+  });
   return s;
 }
 

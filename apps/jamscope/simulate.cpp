@@ -151,6 +151,8 @@ class Run {
 
   void record_frame() {
     const jam::Snapshot frame = snapshot(simulation_->view());
+    append_open(pending_, simulation_->excursions());
+    if (!pending_.excursion_count.empty()) append_open(series_, simulation_->excursions());
     writer_->append(frame, pending_);
     pending_ = jam::Series{};
     pipeline_.add(frame);

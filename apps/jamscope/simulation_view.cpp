@@ -91,6 +91,22 @@ std::array<double, 12> by_label(const dem::Window::Load& load, dem::Vec3 dem::Wa
   return row;
 }
 
+void append(jam::Excursions& rows, const dem::Excursion& e, bool open) {
+  rows.particle.push_back(e.id);
+  rows.first_step.push_back(e.first_step);
+  rows.last_step.push_back(e.last_step);
+  rows.peak_step.push_back(e.peak_step);
+  rows.peak_force.push_back(float(e.peak_force));
+  rows.impulse.push_back(float(e.impulse));
+  rows.work.push_back(float(e.work));
+  rows.path.push_back(float(e.path));
+  rows.turned.push_back(float(e.turned));
+  rows.first_position.push_back(single(e.first_position));
+  rows.peak_position.push_back(single(e.peak_position));
+  rows.last_position.push_back(single(e.last_position));
+  rows.open.push_back(open ? 1 : 0);
+}
+
 void append(jam::Series::Energy& e, const dem::Ledger& l) {
   e.kinetic.push_back(l.kinetic);
   e.rotational.push_back(l.rotational);
@@ -191,6 +207,12 @@ jam::Snapshot snapshot(const dem::View& view) {
   return s;
 }
 
+void append_open(jam::Series& series, const std::vector<dem::Excursion>& excursions) {
+  if (series.excursion_count.empty()) return;
+  series.excursion_count.back() += std::uint32_t(excursions.size());
+  for (const dem::Excursion& e : excursions) append(series.excursions, e, true);
+}
+
 void append(jam::Series& series, const dem::Window& window) {
   series.time.push_back(window.time);
   series.step.push_back(window.last_step);
@@ -200,6 +222,8 @@ void append(jam::Series& series, const dem::Window& window) {
   series.largest_overlap.push_back(window.largest_overlap);
   series.ended_pp.push_back(window.ended_pairs.count);
   series.ended_pw.push_back(window.ended_wall_pairs.count);
+  series.excursion_count.push_back(std::uint32_t(window.excursions.size()));
+  for (const dem::Excursion& e : window.excursions) append(series.excursions, e, false);
   series.walls.resize(window.walls.size());
   for (std::size_t w = 0; w < window.walls.size(); ++w) {
     const dem::Window::Load& load = window.walls[w];

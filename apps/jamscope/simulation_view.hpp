@@ -16,7 +16,10 @@ jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::
 // One frame, rounded to the file's precision.
 jam::Snapshot snapshot(const dem::View& view);
 
-// Adds one row.
+// Adds one row, with the excursions that ended in the window.
 void append(jam::Series& series, const dem::Window& window);
+
+// Those that have not ended, to the last row; nothing where there is none.
+void append_open(jam::Series& series, const std::vector<dem::Excursion>& excursions);
 
 }  // namespace jamscope

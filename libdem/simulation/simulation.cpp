@@ -70,12 +70,14 @@ struct Simulation::Engine {
   // goes on like this.
   std::vector<double> chunk_speed, chunk_jolt;
   double foresight = 0;  // m, upper bound of what the odometer gains until all are due again
-  // Of each chunk's grains when it was due last: their largest compressive force, N, and how many are above the watched one.
+  // Of each chunk's grains when it was due last: their largest compressive force, N, and those above the watched one.
   struct Pressed {
     double largest = 0;
-    std::uint32_t watched = 0;
+    std::vector<WatchedGrain> above;
   };
   std::vector<Pressed> pressed;
+  std::vector<WatchedGrain> above;  // of all chunks
+  ExcursionTracker excursions;
   std::vector<double> closing_jolt;  // [chunks] m/s, by how much two bodies' speeds may change until then, when all were due last
   Effort effort;
 
@@ -100,6 +102,11 @@ struct Simulation::Engine {
     move_walls();
 
     const bool goes_on = !state.force.empty();
+    if (goes_on) {
+      for (std::size_t k = 1; k < state.excursions.size(); ++k)
+        if (state.excursions[k].id <= state.excursions[k - 1].id) throw CaseError("the stored excursions are not in order of their grains");
+      excursions = ExcursionTracker(std::move(state.excursions));
+    }
     const bool ledger_goes_on = setup.keep_ledger && goes_on;
     if (ledger_goes_on && (state.ledger.pairs.size() != state.pairs.size() ||
                            state.ledger.wall_pairs.size() != state.wall_pairs.size() ||
@@ -213,14 +220,42 @@ struct Simulation::Engine {
   void evaluate(bool look, bool record, bool move) {
     const auto finish = [&](std::size_t d) { setup.levels == 0 ? finish_chunk<false>(d, move) : finish_chunk<true>(d, move); };
     window.largest_overlap = std::max(window.largest_overlap, evaluate_with(look, record, finish));
-    std::uint32_t watched = 0;
     for (const std::uint32_t c : due_chunks) {
       window.largest_compressive_force = std::max(window.largest_compressive_force, pressed[c].largest);
-      watched += pressed[c].watched;
       window.ended_pairs += pairs.chunk[c].ended;
     }
     for_each_due_wall_chunk([&](const WallContacts::Chunk& chunk) { window.ended_wall_pairs += chunk.ended; });
-    if (all_due()) window.most_watched = std::max(window.most_watched, watched);
+    if (all_due()) follow_watched();
+  }
+
+  void follow_watched() {
+    above.clear();
+    for (const std::uint32_t c : due_chunks)
+      for (WatchedGrain& grain : pressed[c].above) {
+        grain.power = power_of_walls(c, grain.row);
+        above.push_back(grain);
+      }
+    std::sort(above.begin(), above.end(), [](const WatchedGrain& a, const WatchedGrain& b) { return a.id < b.id; });
+    window.most_watched = std::max(window.most_watched, std::uint32_t(above.size()));
+    excursions.look(step, setup.step * double(stride_of_all()), above);
+  }
+
+  // W, that walls put into a grain of a chunk at their contacts.
+  double power_of_walls(std::uint32_t c, std::uint32_t row) const {
+    double power = 0;
+    for (std::uint32_t k = walls.chunk_begin[c]; k < walls.chunk_begin[c + 1]; ++k) {
+      const WallContacts::Chunk& chunk = walls.chunk[k];
+      const WallPose& pose = poses[chunk.wall];
+      const auto begin = walls.candidate.begin() + chunk.begin, end = walls.candidate.begin() + chunk.end;
+      const auto candidate = std::lower_bound(begin, end, row, [](const WallCandidate& a, std::uint32_t b) { return a.particle < b; });
+      if (candidate == end || candidate->particle != row) continue;
+      for (const WallContact& contact : walls.contacts(*candidate)) {
+        if (!contact.acts()) continue;
+        const Vec3 force = contact.tangential - (contact.elastic + contact.damping) * contact.touch.normal;
+        power += force.dot(pose.velocity + pose.angular_velocity.cross(contact.touch.point - pose.position));
+      }
+    }
+    return power;
   }
   template <class Finish>
   double evaluate_with(bool look, bool record, Finish finish) {
@@ -344,7 +379,9 @@ struct Simulation::Engine {
     const std::uint32_t c = due_chunks[d];
     const Vec4 gravity = quad(setup.gravity, 0);
     Motion motion;
-    Pressed now;
+    Pressed& now = pressed[c];
+    now.largest = 0;
+    now.above.clear();
     std::uint8_t finest = setup.levels;
     double gravity_shift = 0;
     for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i) {
@@ -364,10 +401,12 @@ struct Simulation::Engine {
       grains.forces[i].force += weight;
       const double force = grains.forces[i].force[3];
       now.largest = std::max(now.largest, force);
-      now.watched += force > setup.watch_force ? 1 : 0;
+      if (force > setup.watch_force) [[unlikely]] {
+        const GrainRow& grain = grains.rows[i];
+        now.above.push_back({std::uint32_t(i), grains.id[i], force, 0, grain.velocity().norm(), grain.angular_velocity().norm(), grain.position()});
+      }
       if (move) kick_and_drift<Levels>(i, motion);
     }
-    pressed[c] = now;
     chunk_level[c] = finest;
     // A grain that changes its level falls for another time than its weight acts.
     pairs.chunk[c].ledger.time_stepping -= setup.step * gravity_shift;
@@ -603,6 +642,7 @@ std::uint64_t Simulation::step() const { return engine_->step; }
 double Simulation::time() const { return engine_->time(); }
 const Setup& Simulation::setup() const { return engine_->setup; }
 const Particles& Simulation::particles() const { return engine_->grains.caller; }
+const std::vector<Excursion>& Simulation::excursions() const { return engine_->excursions.open(); }
 double Simulation::kinetic_energy() const { return engine_->kinetic_energy(); }
 Ledger Simulation::ledger() const { return engine_->ledger(); }
 const Effort& Simulation::effort() const { return engine_->effort; }
@@ -672,6 +712,7 @@ State Simulation::state() const {
   Memory memory = gather(grains, e.pairs, e.walls);
   state.pairs = std::move(memory.pairs);
   state.wall_pairs = std::move(memory.wall_pairs);
+  state.excursions = e.excursions.open();
   if (e.setup.keep_ledger) {
     state.ledger = {e.spent, e.initial_energy, e.wall_work, e.last_power, std::move(memory.last), std::move(memory.wall_last)};
   }
@@ -746,6 +787,7 @@ Window Simulation::take_window() {
   w.last_step = e.step;
   w.time = e.time();
   w.kinetic_energy = e.kinetic_energy();
+  w.excursions = e.excursions.take_ended();
   w.walls = e.load_sum;
   const double steps = double(e.step - w.first_step);
   for (Window::Load& load : w.walls) {

@@ -18,6 +18,7 @@
 #include "libdem/contact/wall_load.hpp"
 #include "libdem/geometry/walls.hpp"
 #include "libdem/particles/particles.hpp"
+#include "libdem/simulation/excursions.hpp"
 
 namespace dem {
 
@@ -36,7 +37,7 @@ struct Setup {
   // period, a falling grain falls with less than gravity, and forces in balance are left alone (Cundall, Proc. Symp. Rock
   // Mechanics, 1987; here along the force and not axis by axis, so that it does not depend on the axes).
   double local_damping = 0;
-  double watch_force = 20;    // N, grains under a larger compressive force are counted in the windows
+  double watch_force = 20;    // N, grains under a larger compressive force are counted and followed (excursions.hpp)
   LawChoice law;              // parts of the contact law (libdem/contact/laws.hpp)
   bool wall_curvature = false;  // the curvature of walls enters the effective radius (on_curved_wall); else they count as flat
   bool keep_ledger = false;   // book where the energy goes (class Ledger); slower. Not with local damping
@@ -102,6 +103,7 @@ struct State {
   std::vector<Pair> pairs;
   std::vector<WallPair> wall_pairs;
   Ledger ledger;
+  std::vector<Excursion> excursions;  // that have not ended, ascending by id
 };
 
 // J. Where the energy of a run is, and where it went since the run began.
@@ -167,6 +169,7 @@ struct Window {
   double largest_overlap = 0;                   // 1, overlap over radius
   double kinetic_energy = 0;                    // J, of last_step
   EndedContacts ended_pairs, ended_wall_pairs;  // contacts that ended; with a wall: gave way to no other
+  std::vector<Excursion> excursions;            // that have ended, in order of their ends, then by id
   struct Load {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // mean
     Vec3 force_min, force_max, torque_min, torque_max;  // over the steps at which all contacts are evaluated
@@ -207,6 +210,7 @@ class Simulation {
   const Particles& particles() const;
   std::size_t contacts() const;  // acting now, walls included
   double kinetic_energy() const;  // J, translation and rotation
+  const std::vector<Excursion>& excursions() const;  // that have not ended, ascending by id
   Ledger ledger() const;          // of a run that keeps one; else all zero
   // s, the smallest local limit of the step, 2/omega of a grain between its contacts as they are now (guards.hpp); infinity
   // where nothing touches. Costs a pass over the contacts.

@@ -43,6 +43,10 @@ Series read_series(const h5::File& file, const RunInfo& info, std::uint64_t coun
   schema::visit_all_series(series, info.walls, [&](const std::string& path, const Item& item, auto& values) {
     read_column(file, path, item, 0, count, values);
   });
+  const std::uint64_t excursions = schema::excursion_rows(series, series.size());
+  schema::visit_excursions(series.excursions, [&](const Item& item, auto& values) {
+    read_column(file, path_of(item), item, 0, excursions, values);
+  });
   const bool any = std::any_of(info.walls.begin(), info.walls.end(),
                                [&](const Wall& wall) { return file.exists("/series/walls/" + wall.name); });
   if (!any) series.walls.clear();

@@ -1,6 +1,7 @@
 #include "libjam/snapshot/schema.hpp"
 
 #include <bit>
+#include <numeric>
 
 #include "libjam/snapshot/crc32c.hpp"
 
@@ -50,33 +51,44 @@ WallState state_of(const WallRow& r) {
   return s;
 }
 
+namespace {
+
+// Appends rows [first, last) of each column that visit(owner, f) shows.
+template <class Owner, class Visit>
+void append_rows(Owner& to, const Owner& from, std::size_t first, std::size_t last, Visit visit) {
+  std::vector<void*> columns;
+  visit(to, [&](const Item&, auto& values) { columns.push_back(&values); });
+  std::size_t next = 0;
+  visit(from, [&]<class C>(const Item&, const C& values) {
+    C& target = *static_cast<C*>(columns[next++]);
+    if (!values.empty())
+      target.insert(target.end(), values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(last));
+  });
+}
+
+void append_rows(Series& to, const Series& from, std::size_t first, std::size_t last) {
+  if (to.walls.size() < from.walls.size()) to.walls.resize(from.walls.size());
+  append_rows(to, from, first, last, [](auto& s, auto f) { visit_series(s, f); });
+  for (std::size_t w = 0; w < from.walls.size(); ++w)
+    append_rows(to.walls[w], from.walls[w], first, last, [](auto& s, auto f) { visit_wall_series(s, f); });
+  append_rows(to.excursions, from.excursions, excursion_rows(from, first), excursion_rows(from, last),
+              [](auto& e, auto f) { visit_excursions(e, f); });
+}
+
+}  // namespace
+
+std::uint64_t excursion_rows(const Series& series, std::size_t windows) {
+  if (series.excursion_count.empty()) return 0;
+  return std::accumulate(series.excursion_count.begin(), series.excursion_count.begin() + std::ptrdiff_t(windows), std::uint64_t{0});
+}
+
 Series rows_of(const Series& series, std::size_t first, std::size_t last) {
-  Series part = series;
-  const auto cut = [&](const Item&, auto& values) {
-    if (values.empty()) return;
-    values.erase(values.begin() + static_cast<std::ptrdiff_t>(last), values.end());
-    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
-  };
-  visit_series(part, cut);
-  for (Series::WallSeries& wall : part.walls) visit_wall_series(wall, cut);
+  Series part;
+  append_rows(part, series, first, last);
   return part;
 }
 
-void append(Series& series, const Series& more) {
-  const auto add = [](auto& to, const auto& from, auto visit) {
-    std::vector<void*> columns;
-    visit(to, [&](const Item&, auto& values) { columns.push_back(&values); });
-    std::size_t next = 0;
-    visit(from, [&]<class C>(const Item&, const C& values) {
-      C& target = *static_cast<C*>(columns[next++]);
-      target.insert(target.end(), values.begin(), values.end());
-    });
-  };
-  if (series.walls.size() < more.walls.size()) series.walls.resize(more.walls.size());
-  add(series, more, [](auto& s, auto f) { visit_series(s, f); });
-  for (std::size_t w = 0; w < more.walls.size(); ++w)
-    add(series.walls[w], more.walls[w], [](auto& s, auto f) { visit_wall_series(s, f); });
-}
+void append(Series& series, const Series& more) { append_rows(series, more, 0, more.size()); }
 
 std::uint32_t checksum(const FrameRow& row, const Snapshot& snapshot, bool wall_loads, const Series& new_rows,
                        const std::vector<Wall>& walls) {
@@ -93,6 +105,7 @@ std::uint32_t checksum(const FrameRow& row, const Snapshot& snapshot, bool wall_
   visit_pp(snapshot.pp, add_column);
   visit_pw(snapshot.pw, add_column);
   visit_all_series(new_rows, walls, [&](const std::string&, const Item&, const auto& values) { add(crc, values); });
+  visit_excursions(new_rows.excursions, add_column);
   return crc.checksum();
 }
 

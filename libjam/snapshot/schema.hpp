@@ -29,6 +29,7 @@ enum class Axis : std::uint8_t {
   pp,           // C rows, a frame's are [pp_start, pp_start + pp_count)
   pw,           // W rows, a frame's are [pw_start, pw_start + pw_count)
   series,       // S windows of steps, complete up to frame f are the first series_count[f]
+  excursion,    // E stays of particles above a force, those of the windows one after the other
 };
 
 enum class Need : std::uint8_t { required, optional };
@@ -158,6 +159,7 @@ inline constexpr Item table[] = {
     {"/series/ended_pp", T::u4, 32, series, optional, "1",
      "contacts of particles that ended: lasted 2^k <= steps < 2^(k+1), column 31: was there when the run began"},
     {"/series/ended_pw", T::u4, 32, series, optional, "1", "the same of contacts with walls"},
+    {"/series/excursion_count", T::u4, 1, series, optional, "1", "rows of /excursions that came with the window"},
     {"/series/energy/kinetic", T::f8, 1, series, optional, "J", "kinetic energy of translation, of the leapfrog scheme"},
     {"/series/energy/rotational", T::f8, 1, series, optional, "J", "kinetic energy of rotation"},
     {"/series/energy/gravitational", T::f8, 1, series, optional, "J", "-m g.x"},
@@ -183,6 +185,21 @@ inline constexpr Item table[] = {
     {"/series/walls/*/work", T::f8, 1, series, optional, "J", "that the wall put into the grains since the start"},
     {"/series/walls/*/label_force", T::f8, 12, series, optional, "N", "mean force on triangles of label 0, 1, 2, 3"},
     {"/series/walls/*/label_torque", T::f8, 12, series, optional, "N m", "mean torque, likewise"},
+
+    {"/excursions/particle", T::u4, 1, excursion, optional, "1", "id of a particle that stayed above the watched compressive force"},
+    {"/excursions/first_step", T::u8, 1, excursion, optional, "1", "first step above"},
+    {"/excursions/last_step", T::u8, 1, excursion, optional, "1", "last step above"},
+    {"/excursions/peak_step", T::u8, 1, excursion, optional, "1", "step of the largest force"},
+    {"/excursions/peak_force", T::f4, 1, excursion, optional, "N", "largest compressive force"},
+    {"/excursions/impulse", T::f4, 1, excursion, optional, "N s", "integral of the compressive force"},
+    {"/excursions/work", T::f4, 1, excursion, optional, "J", "that walls did on the particle at its contacts"},
+    {"/excursions/path", T::f4, 1, excursion, optional, "m", "integral of the speed"},
+    {"/excursions/turned", T::f4, 1, excursion, optional, "rad", "integral of the angular speed"},
+    {"/excursions/first_position", T::f4, 3, excursion, optional, "m", "centre in the first step"},
+    {"/excursions/peak_position", T::f4, 3, excursion, optional, "m", "centre in the step of the largest force"},
+    {"/excursions/last_position", T::f4, 3, excursion, optional, "m", "centre in the last step"},
+    {"/excursions/open", T::u1, 1, excursion, optional, "1",
+     "1: had not ended; a later row with the same particle and first_step takes its place"},
 };
 
 constexpr const Item& find(std::string_view path) {
@@ -303,6 +320,7 @@ void visit_series(S& s, F&& f) {
   f(column<double>("/series/largest_overlap"), s.largest_overlap);
   f(column<Series::EndedContacts>("/series/ended_pp"), s.ended_pp);
   f(column<Series::EndedContacts>("/series/ended_pw"), s.ended_pw);
+  f(column<std::uint32_t>("/series/excursion_count"), s.excursion_count);
   f(column<double>("/series/energy/kinetic"), s.energy.kinetic);
   f(column<double>("/series/energy/rotational"), s.energy.rotational);
   f(column<double>("/series/energy/gravitational"), s.energy.gravitational);
@@ -334,7 +352,27 @@ void visit_wall_series(W& w, F&& f) {
   f(column<std::array<double, 12>>("/series/walls/*/label_torque"), w.label_torque);
 }
 
-// f(path in the file, item, member) for every growing column of a series; walls beyond s.walls are skipped.
+template <class E, class F>
+void visit_excursions(E& e, F&& f) {
+  f(column<ParticleId>("/excursions/particle"), e.particle);
+  f(column<std::uint64_t>("/excursions/first_step"), e.first_step);
+  f(column<std::uint64_t>("/excursions/last_step"), e.last_step);
+  f(column<std::uint64_t>("/excursions/peak_step"), e.peak_step);
+  f(column<float>("/excursions/peak_force"), e.peak_force);
+  f(column<float>("/excursions/impulse"), e.impulse);
+  f(column<float>("/excursions/work"), e.work);
+  f(column<float>("/excursions/path"), e.path);
+  f(column<float>("/excursions/turned"), e.turned);
+  f(column<Vec3f>("/excursions/first_position"), e.first_position);
+  f(column<Vec3f>("/excursions/peak_position"), e.peak_position);
+  f(column<Vec3f>("/excursions/last_position"), e.last_position);
+  f(column<std::uint8_t>("/excursions/open"), e.open);
+}
+
+// Rows of the excursions of the first `windows` windows.
+std::uint64_t excursion_rows(const Series& series, std::size_t windows);
+
+// f(path in the file, item, member) for every growing column of a series with one row per window; walls beyond s.walls are skipped.
 template <class S, class F>
 void visit_all_series(S& s, const std::vector<Wall>& walls, F&& f) {
   visit_series(s, [&](const Item& i, auto& values) { f(path_of(i), i, values); });
@@ -351,7 +389,7 @@ void append(Series& series, const Series& more);
 
 // CRC-32C (Castagnoli) of what a frame adds to the file: the row of /frames, the walls' states in order of their ids,
 // the rows of /particles, /contacts/pp, /contacts/pw, and the new rows of /series; each item in the order of the table,
-// only items that the file has, little-endian bytes as stored.
+// then those of /excursions; only items that the file has, little-endian bytes as stored.
 std::uint32_t checksum(const FrameRow& row, const Snapshot& snapshot, bool wall_loads, const Series& new_rows,
                        const std::vector<Wall>& walls);
 

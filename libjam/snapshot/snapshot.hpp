@@ -154,6 +154,20 @@ struct RunInfo {
   bool wall_loads_known = true;  // WallState::force and torque were recorded, not left at zero
 };
 
+// Particles under a compressive force above the one that the source watched, from every step: each row is one uninterrupted stay. A row that
+// is `open` is a stay that had not ended when it was written; a later row with the same particle and first_step takes its place.
+struct Excursions {
+  std::vector<ParticleId> particle;                            // [E]
+  std::vector<std::uint64_t> first_step, last_step, peak_step;  // [E] first and last above
+  std::vector<float> peak_force;                               // [E] N
+  std::vector<float> impulse;                                  // [E] N s, integral of the compressive force
+  std::vector<float> work;                                     // [E] J, that walls did on the particle at its contacts
+  std::vector<float> path, turned;                             // [E] m, rad, integrals of speed and angular speed
+  std::vector<Vec3f> first_position, peak_position, last_position;  // [E] m, centre
+  std::vector<std::uint8_t> open;                              // [E] 1 where it had not ended
+  std::size_t size() const { return particle.size(); }
+};
+
 // Scalars of one window of steps, so that nothing between two snapshots is lost. Row r covers the steps in
 // (step[r-1], step[r]].
 struct Series {
@@ -167,6 +181,8 @@ struct Series {
   // the last one was there when the run began; or absent. What slips from one triangle of a wall to the next goes on.
   using EndedContacts = std::array<std::uint32_t, 32>;
   std::vector<EndedContacts> ended_pp, ended_pw;
+  std::vector<std::uint32_t> excursion_count;  // [S] rows of `excursions` that came with the window, or absent
+  Excursions excursions;
   // [S] J at the end of the window, or absent: where the energy is, then where it went since the start of the run.
   struct Energy {
     std::vector<double> kinetic, rotational;  // of the leapfrog scheme

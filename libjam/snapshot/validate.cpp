@@ -291,6 +291,20 @@ void validate(const Series& s, const RunInfo& info, const std::string& place) {
     }
     check_column(item, name, values, s.size(), place);
   });
+  const std::uint64_t excursions = schema::excursion_rows(s, s.excursion_count.size());
+  if (s.excursions.size() != excursions)
+    fail(place, "/excursions has " + text(s.excursions.size()) + " rows, expected " + text(excursions) + " as /series/excursion_count says");
+  schema::visit_excursions(s.excursions, [&](const Item& item, const auto& values) {
+    if (values.size() != excursions)
+      fail(place, std::string(item.path) + " has " + text(values.size()) + " rows, expected " + text(excursions));
+    check_column(item, std::string(item.path), values, excursions, place);
+  });
+  for (std::size_t k = 0; k < excursions; ++k) {
+    const Excursions& e = s.excursions;
+    if (e.first_step[k] > e.peak_step[k] || e.peak_step[k] > e.last_step[k])
+      fail(place, "/excursions row " + text(k) + " has its peak in step " + text(e.peak_step[k]) + ", expected one from " +
+                      text(e.first_step[k]) + " to " + text(e.last_step[k]));
+  }
   for (std::size_t r = 1; r < s.size(); ++r) {
     if (!(s.time[r] > s.time[r - 1]) || s.step[r] <= s.step[r - 1]) {
       fail(place, "/series row " + text(r) + " (time " + text(s.time[r]) + " s, step " + text(s.step[r]) +

@@ -68,11 +68,12 @@ SnapshotWriter SnapshotWriter::attach(const std::filesystem::path& path) {
   if (index.series.size() > 0) {
     writer.last_series_time_ = index.series.time.back();
     writer.last_series_step_ = index.series.step.back();
+    writer.excursions_ = index.series.excursions.size();
   }
   const h5::File file = h5::File::open(path);
   for (const Item& item : schema::table) {
     using enum schema::Axis;
-    if (item.axis != particle && item.axis != pp && item.axis != pw && item.axis != series) continue;
+    if (item.axis != particle && item.axis != pp && item.axis != pw && item.axis != series && item.axis != excursion) continue;
     if (item.path.find('*') == std::string_view::npos) {
       if (const std::string name = path_of(item); file.exists(name)) writer.columns_.insert(name);
     } else {
@@ -146,6 +147,10 @@ void SnapshotWriter::make_missing_columns(const Snapshot& snapshot, const Series
   }
   if (const std::size_t n = new_rows.size(); !columns_.contains("/series/time") && n > 0) {
     schema::visit_all_series(new_rows, info_.walls, plan(n, table_chunk, false));
+    if (!new_rows.excursion_count.empty())
+      schema::visit_excursions(new_rows.excursions, [&](const Item& item, const auto&) {
+        columns.push_back({path_of(item), &item, table_chunk, false});
+      });
   }
   if (columns.empty()) return;
 
@@ -191,6 +196,7 @@ void SnapshotWriter::check_columns(const Snapshot& snapshot, const Series& new_r
   schema::visit_all_series(rows, info_.walls, [&](const std::string& path, const Item&, const auto& values) {
     check(path, values.size(), new_rows.size());
   });
+  schema::visit_excursions(new_rows.excursions, group(new_rows.excursions.size()));
 }
 
 // A disk that would fill up in the middle of the frame is told before anything is written.
@@ -202,6 +208,7 @@ void SnapshotWriter::check_space(const Snapshot& snapshot, const Series& new_row
   schema::visit_pw(snapshot.pw, add);
   schema::visit_all_series(new_rows, info_.walls,
                            [&](const std::string&, const Item& item, const auto& values) { add(item, values); });
+  schema::visit_excursions(new_rows.excursions, add);
   std::error_code error;
   const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), error);
   if (!error && space.available < bytes) {
@@ -254,6 +261,7 @@ void SnapshotWriter::append(const Snapshot& snapshot, const Series& new_rows) {
   schema::visit_all_series(new_rows, info_.walls, [&](const std::string& path, const Item&, const auto& values) {
     if (!values.empty()) file.write_rows(path, last_.series_count, values);
   });
+  schema::visit_excursions(new_rows.excursions, written_from(excursions_));
   for (std::size_t w = 0; w < snapshot.walls.size(); ++w) {
     const schema::WallRow state = schema::row_of(snapshot.walls[w]);
     schema::visit_wall([&]<class V>(const Item& item, V schema::WallRow::*member) {
@@ -270,6 +278,7 @@ void SnapshotWriter::append(const Snapshot& snapshot, const Series& new_rows) {
   file.close();
 
   last_ = row;
+  excursions_ += new_rows.excursions.size();
   ++frames_;
   if (new_rows.size() > 0) {
     last_series_time_ = new_rows.time.back();

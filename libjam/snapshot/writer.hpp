@@ -44,6 +44,7 @@ class SnapshotWriter {
   schema::FrameRow last_;        // of the last frame
   double last_series_time_ = 0;  // of the last row of /series
   std::uint64_t last_series_step_ = 0;
+  std::uint64_t excursions_ = 0;  // rows of /excursions
   std::set<std::string> columns_;  // that grow with particles, contacts and series, as made so far
   std::uint64_t particle_chunk_ = 0, pp_chunk_ = 0, pw_chunk_ = 0;  // rows; 0 while there are no such columns
 };

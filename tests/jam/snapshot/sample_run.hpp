@@ -155,6 +155,15 @@ inline Series series(std::size_t k) {
     };
     schema::visit_series(s, fill);
     for (auto& w : s.walls) schema::visit_wall_series(w, fill);
+    // None, one or two excursions; not in the first window.
+    s.excursion_count.back() = std::uint32_t(r % 3);
+    for (std::uint32_t e = 0; e < s.excursion_count.back(); ++e) {
+      schema::visit_excursions(s.excursions, fill);
+      s.excursions.first_step.back() = 40000 * (k - 1) + 10 * r;
+      s.excursions.peak_step.back() = s.excursions.first_step.back() + e;
+      s.excursions.last_step.back() = s.excursions.first_step.back() + 5;
+      s.excursions.open.back() = std::uint8_t(e);
+    }
     s.step.back() = 40000 * (k - 1) + 10000 * r;
     s.time.back() = 5e-8 * static_cast<double>(s.step.back());
   }
@@ -230,6 +239,11 @@ inline std::string difference(const Series& a, const Series& b, const RunInfo& r
   };
   schema::visit_all_series(a, run.walls, bytes(x));
   schema::visit_all_series(b, run.walls, bytes(y));
+  const auto of_excursions = [&](std::vector<std::string>& out) {
+    return [&](const schema::Item& item, const auto& values) { bytes(out)(schema::path_of(item), item, values); };
+  };
+  schema::visit_excursions(a.excursions, of_excursions(x));
+  schema::visit_excursions(b.excursions, of_excursions(y));
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (x[i] != y[i]) return x[i].substr(0, 40);
   }

@@ -21,7 +21,7 @@ class Schema : public sample::InFolder {};
 std::string shape_of(const Item& item) {
   const std::map<Axis, std::string> letters{{attribute, ""},      {text, ""},    {argument, "A"}, {material, "M"},
                                             {interaction, "M,M"}, {vertex, "V"}, {triangle, "F"}, {sphere, "G"}, {frame, "T"},
-                                            {particle, "P"},      {pp, "C"},     {pw, "W"},       {series, "S"}};
+                                            {particle, "P"},      {pp, "C"},     {pw, "W"},       {series, "S"}, {excursion, "E"}};
   std::string shape = letters.at(item.axis);
   if (item.width > 1) shape += (shape.empty() ? "" : ",") + std::to_string(item.width);
   return shape.empty() ? shape : "[" + shape + "]";
@@ -78,8 +78,9 @@ TEST_F(Schema, VisitorsGoThroughEveryGrowingItemInTheOrderOfTheTable) {
   visit_pw(s.pw, note);
   visit_series(rows, note);
   visit_wall_series(wall, note);
+  visit_excursions(rows.excursions, note);
   for (const Item& i : table) {
-    const bool grows = i.axis == frame || i.axis == particle || i.axis == pp || i.axis == pw || i.axis == series;
+    const bool grows = i.axis == frame || i.axis == particle || i.axis == pp || i.axis == pw || i.axis == series || i.axis == excursion;
     // The commit is no member: it is computed from all others.
     if (grows && i.path != "/frames/commit") expected.push_back(i.path);
   }
