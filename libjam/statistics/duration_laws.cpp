@@ -43,7 +43,7 @@ double power_log_density(double t, double t0, const Parameters& p) { return std:
 // power law with an exponential cut-off: p[0] = exponent, p[1] = cut-off time, s. Density ~ t^-p0 exp(-t/p1).
 // log of the integral of (u/t)^-a exp(-(u - t)/tau) over u from t on, per t.
 double log_cut_off_tail(double t, const Parameters& p) {
-  static const boost::math::quadrature::exp_sinh<double> integrator(9);
+  thread_local boost::math::quadrature::exp_sinh<double> integrator(9);
   const auto f = [&](double x) { return std::pow(1 + x, -p[0]) * std::exp(-x * t / p[1]); };
   return std::log(integrator.integrate(f, 0.0, std::numeric_limits<double>::infinity(), 1e-9));
 }
