@@ -98,10 +98,25 @@ std::size_t recovered(const WallContacts& contacts) {
                                                 [](std::uint8_t f) { return (f & contact_recovered) != 0; }));
 }
 
+BladePose blade_of(const Snapshot& snapshot, const std::vector<Wall>& walls) {
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const WallState& state = snapshot.walls[w];
+    if (walls[w].role == WallRole::blade) return {snapshot.time, state.position, state.velocity, state.angular_velocity, state.orientation};
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string events_csv(const Analysis& analysis) {
   return events_csv(analysis.events, analysis.tracks);
+}
+
+std::string step_jams_csv(const Analysis& analysis) {
+  if (analysis.every_step.empty()) return "";
+  std::string csv(step_jams_header());
+  for (std::size_t s = 0; s < analysis.every_step.size(); ++s) csv += step_jams_rows(JamStream(s), analysis.every_step[s].jams);
+  return csv;
 }
 
 Pipeline::Pipeline(const RunInfo& info, const Criteria& criteria) : info_(info) {
@@ -131,6 +146,7 @@ ExaminedFrame Pipeline::examine(const Snapshot& snapshot, std::size_t frame) con
   found.jams = jam_frame(snapshot, network.jammed(), network.clusters());
   for (const RecordedMetric& recorded : analysis_.metrics) found.metrics.push_back(find_metric(recorded.name)->value(network));
   found.power = info_.wall_loads_known ? power_from_wall_loads(snapshot, info_.walls) : power_from_wall_contacts(snapshot, info_.walls);
+  found.blade = blade_of(snapshot, info_.walls);
   found.blade_moves = any_blade_moves(snapshot, info_.walls);
   found.recovered_contacts = recovered(snapshot.pw);
   found.ages_pp = ages(snapshot.pp.birth_step, snapshot.step);
@@ -147,6 +163,7 @@ const FrameSummary& Pipeline::add(ExaminedFrame frame) {
   jam_frames_.push_back(std::move(frame.jams));
   analysis_.clusters.insert(analysis_.clusters.end(), frame.clusters.begin(), frame.clusters.end());
   frame_power_.push_back(frame.power);
+  blade_.push_back(frame.blade);
   blade_moved_ = blade_moved_ || frame.blade_moves;
   recovered_contacts_ += frame.recovered_contacts;
   ages_pp_ = frame.ages_pp;
@@ -192,6 +209,21 @@ Analysis Pipeline::finish(const Series& series) const {
     note(recovered_contacts_, " contacts with walls are not in the source and were recovered from force balances");
   }
 
+  if (info_.watch_force > 0 && info_.dt > 0 && !series.excursion_count.empty()) {
+    const double end_force = a.criteria.end_force.value_or(a.criteria.jam_force);
+    if (end_force < info_.watch_force) note("the run watched particles above ", info_.watch_force, " N: jams of every step end there, not at ", end_force, " N");
+    if (end_force > info_.watch_force) note("jams of every step last until the force falls to ", info_.watch_force, " N, which the run watched");
+    const Detector detector{a.criteria.jam_force, info_.watch_force, a.criteria.hold_off, a.criteria.shortest_jam};
+    const Sites sites{.z_low = info_.gap.z_low, .z_high = info_.gap.z_high};
+    const Excursions stays = last_word(series.excursions);
+    const std::uint64_t first_step = a.frames.empty() ? 0 : a.frames.front().step;
+    const double begin = double(first_step) * info_.dt, end = series.time.back();
+    for (const JamStream stream : {JamStream::global, JamStream::particle, JamStream::site}) {
+      Analysis::StepStream& found = a.every_step.emplace_back();
+      found.jams = step_jams(stays, stream, detector, blade_, sites, info_.dt, first_step);
+      found.statistics = jam_statistics(found.jams, begin, end);
+    }
+  }
   a.contact_life = contact_life(series, ages_pp_, ages_pw_, info_.dt);
   if (series_has_power(series, info_.walls)) {
     const double begin = a.frames.empty() ? 0.0 : a.frames.front().time;

@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "libjam/events/event.hpp"
+#include "libjam/events/every_step.hpp"
 #include "libjam/events/jam_frame.hpp"
 #include "libjam/jamming/cluster.hpp"
 #include "libjam/jamming/criteria.hpp"
 #include "libjam/snapshot/snapshot.hpp"
 #include "libjam/statistics/contact_life.hpp"
 #include "libjam/statistics/flow_energy.hpp"
+#include "libjam/statistics/jam_statistics.hpp"
 #include "libjam/statistics/survival.hpp"
 
 namespace jam {
@@ -58,12 +60,20 @@ struct Analysis {
   double jam_frequency = 0;                     // 1/s
   double jammed_in_gap_share = 0;  // of all jammed particle samples; NaN where there are none or the gap is not known
   FlowEnergy flow_energy;
+  // Jams as the simulation saw them at every step, by JamStream; empty where the source did not watch.
+  struct StepStream {
+    std::vector<StepJam> jams;
+    JamStatistics statistics;
+  };
+  std::vector<StepStream> every_step;
   std::vector<ContactLife> contact_life;  // by octaves of life; empty where the source does not follow contacts from step to step
   std::vector<std::string> notes;  // what could not be computed from this data, and why
 };
 
 // The events of an analysis as a table; see libjam/events/events_csv.hpp.
 std::string events_csv(const Analysis& analysis);
+// Those seen at every step; empty where the source did not watch.
+std::string step_jams_csv(const Analysis& analysis);
 
 // All that the analysis keeps of one frame.
 struct ExaminedFrame {
@@ -73,6 +83,7 @@ struct ExaminedFrame {
   std::vector<double> metrics;  // in the order of Analysis::metrics
   double power = 0;             // W of the blades, from wall loads where known, else from contacts; NaN where neither
   bool blade_moves = false, tangential_forces_missing = false;
+  BladePose blade;  // of the first wall that is one
   std::size_t recovered_contacts = 0;
   Series::EndedContacts ages_pp{}, ages_pw{};  // contacts by age
 };
@@ -100,6 +111,7 @@ class Pipeline {
   Analysis analysis_;
   std::vector<JamFrame> jam_frames_;
   std::vector<double> frame_power_;  // ExaminedFrame::power of each
+  std::vector<BladePose> blade_;     // ExaminedFrame::blade of each
   std::size_t events_so_far_ = 0;
   std::size_t recovered_contacts_ = 0;
   Series::EndedContacts ages_pp_{}, ages_pw_{};  // of the last frame

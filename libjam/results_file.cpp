@@ -123,6 +123,24 @@ void columns_of(FlowEnergy*, Visit&& column) {
 }
 
 template <class Visit>
+void columns_of(StepJam*, Visit&& column) {
+  column("start", &StepJam::start, "s", "first step above");
+  column("end", &StepJam::end, "s", "last step above");
+  column("duration", &StepJam::duration, "s", "steps above and pauses between them");
+  column("open_at_start", &StepJam::open_at_start, "1", "it was there when the record began");
+  column("open_at_end", &StepJam::open_at_end, "1", "it is there where the record ends");
+  column("peak_force", &StepJam::peak_force, "N", "largest compressive force of a particle");
+  column("peak_time", &StepJam::peak_time, "s", "when");
+  column("peak_particle", &StepJam::peak_particle, "1", "id of the particle that carried it");
+  column("site", &StepJam::site, "1", "sector + 2 layer of the blade, where that was");
+  column("impulse", &StepJam::impulse, "N s", "integral of the members' compressive forces");
+  column("work", &StepJam::work, "J", "that walls did on the members at their contacts");
+  column("path", &StepJam::path, "m", "integral of the speed of the particle with the peak, in its stay");
+  column("turned", &StepJam::turned, "rad", "integral of its angular speed");
+  column("stays", &StepJam::stays, "1", "stays of particles above the force");
+}
+
+template <class Visit>
 void scalars_of(Analysis*, Visit&& scalar) {
   scalar("observed_time", &Analysis::observed_time, "s", "frames times sampling interval");
   scalar("sampling_interval", &Analysis::sampling_interval, "s", "median distance of frames");
@@ -134,6 +152,8 @@ void scalars_of(Analysis*, Visit&& scalar) {
 template <class Visit>
 void scalars_of(Criteria*, Visit&& scalar) {
   scalar("jam_force", &Criteria::jam_force, "N", "a particle is jammed above this compressive force");
+  scalar("hold_off", &Criteria::hold_off, "s", "pauses up to it do not end a jam seen at every step");
+  scalar("shortest_jam", &Criteria::shortest_jam, "s", "shorter ones do not count");
   scalar("bridge_contact_share", &Criteria::bridge_contact_share, "1",
          "of jam_force: contacts above it carry the load");
   scalar("gap_margin", &Criteria::gap_margin, "1", "particle diameters inside the tip circle that count as gap");
@@ -255,6 +275,7 @@ void write_criteria(h5::File& file, const Criteria& criteria) {
     }
   }
   write_scalars(file, "/criteria", criteria);
+  if (criteria.end_force) file.write("/criteria/end_force", std::vector<double>{*criteria.end_force}, "N", "jams seen at every step last until it");
   file.write("/criteria/survival_classes", criteria.survival_classes, "s", "upper bounds of the survival-time classes");
 }
 
@@ -268,6 +289,7 @@ Criteria read_criteria(const h5::File& file) {
   }
   criteria.measure = row->measure;
   read_scalars(file, "/criteria", criteria);
+  if (file.exists("/criteria/end_force")) criteria.end_force = read_one<double>(file, "/criteria/end_force");
   criteria.survival_classes = file.read<double>("/criteria/survival_classes");
   return criteria;
 }
@@ -392,6 +414,8 @@ void write_results(const std::filesystem::path& path, const Analysis& analysis, 
     write_table(file, "/survival_classes", analysis.survival_classes);
     file.write("/jammed_histogram/frames", analysis.jammed_histogram, "1", "row n: frames with n jammed particles");
     write_flow_energy(file, analysis.flow_energy);
+    for (std::size_t s = 0; s < analysis.every_step.size(); ++s)
+      write_with_members(file, "/every_step/" + std::string(jam_stream_names[s]), analysis.every_step[s].jams);
     if (!analysis.contact_life.empty()) write_table(file, "/contact_life", rows_of(analysis.contact_life));
     file.write_texts("/notes", analysis.notes, "what could not be computed from this data, and why");
   });
@@ -420,6 +444,10 @@ Analysis read_results(const std::filesystem::path& path) {
   analysis.survival_classes = read_table<SurvivalClass>(file, "/survival_classes");
   analysis.jammed_histogram = file.read<std::uint32_t>("/jammed_histogram/frames");
   analysis.flow_energy = read_flow_energy(file);
+  for (const std::string_view stream : jam_stream_names) {
+    const std::string group = "/every_step/" + std::string(stream);
+    if (file.exists(group)) analysis.every_step.push_back({read_with_members<StepJam>(file, group), {}});
+  }
   if (file.exists("/contact_life")) analysis.contact_life = life_of(read_table<ContactLifeRow>(file, "/contact_life"));
   analysis.notes = file.read_texts("/notes");
   check_frame_rows(file, analysis);

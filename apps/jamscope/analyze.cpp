@@ -30,6 +30,17 @@ std::string result_text(const jam::Analysis& a) {
     if (std::isfinite(a.jammed_in_gap_share))
       text += fmt::format("{:.3g} % of the jammed grains sat in the gap\n", 100 * a.jammed_in_gap_share);
   }
+  if (!a.every_step.empty()) {
+    const jam::Analysis::StepStream& global = a.every_step[0];
+    const jam::JamStatistics& s = global.statistics;
+    if (global.jams.empty()) {
+      text += fmt::format("at every step: no jams above {:g} N\n", a.criteria.jam_force);
+    } else {
+      const std::string median = std::isfinite(s.median.value) ? fmt::format("half end within {:.3g} ms, ", 1e3 * s.median.value) : "";
+      text += fmt::format("at every step: {} jams ({} of single grains), {:.3g} a second (95 %: {:.3g} to {:.3g}), {}the longest lasts {:.3g} ms\n",
+                          global.jams.size(), a.every_step[1].jams.size(), s.rate.value, s.rate.low, s.rate.high, median, 1e3 * s.longest);
+    }
+  }
   if (a.flow_energy.source != "none")
     text += fmt::format("flow energy {:.4g} J, from the {}\n", a.flow_energy.total, a.flow_energy.source);
   for (const std::string& note : a.notes) text += "note: " + note + "\n";

@@ -213,6 +213,9 @@ void read_analysis(Section analysis, Document& document, jam::Criteria& criteria
   analysis.choice("measure", {{"sum", Measure::sum}, {"max", Measure::max}, {"signed", Measure::signed_}},
                   criteria.measure, optional);
   analysis.quantity("jam_force", dimension::force, criteria.jam_force, optional);
+  if (double force = 0; analysis.quantity("end_force", dimension::force, force, optional)) criteria.end_force = force;
+  analysis.quantity("hold_off", dimension::time, criteria.hold_off, optional);
+  analysis.quantity("shortest_jam", dimension::time, criteria.shortest_jam, optional);
   analysis.number("bridge_contact_share", criteria.bridge_contact_share, optional);
   analysis.number("gap_margin", criteria.gap_margin, optional);
   analysis.quantities("survival_classes", dimension::time, criteria.survival_classes, optional);
@@ -223,6 +226,10 @@ void read_analysis(Section analysis, Document& document, jam::Criteria& criteria
     document.problem(std::string("analysis.") + key, fmt::format("'{}' {}", key, message));
   };
   if (!(criteria.jam_force > 0)) refuse("jam_force", fmt::format("must be positive, got {} N", criteria.jam_force));
+  if (criteria.end_force && !(*criteria.end_force > 0 && *criteria.end_force <= criteria.jam_force))
+    refuse("end_force", fmt::format("must be positive and at most jam_force = {} N, got {} N", criteria.jam_force, *criteria.end_force));
+  if (!(criteria.hold_off >= 0)) refuse("hold_off", fmt::format("must not be negative, got {} s", criteria.hold_off));
+  if (!(criteria.shortest_jam >= 0)) refuse("shortest_jam", fmt::format("must not be negative, got {} s", criteria.shortest_jam));
   if (!(criteria.bridge_contact_share >= 0 && criteria.bridge_contact_share <= 1))
     refuse("bridge_contact_share", fmt::format("must lie in [0, 1], got {}", criteria.bridge_contact_share));
   if (!(criteria.gap_margin >= 0))

@@ -121,6 +121,35 @@ Json event_json(const jam::JamEvent& e) {
           {"members", e.members}};
 }
 
+Json rate_json(const jam::Rate& rate) {
+  return {{"value", number(rate.value)}, {"low", number(rate.low)}, {"high", number(rate.high)}};
+}
+
+// Of one stream, as seen at every step. Intervals hold 95 %.
+Json step_stream_json(const jam::Analysis::StepStream& stream) {
+  const jam::JamStatistics& s = stream.statistics;
+  double peak = 0, work = 0;
+  std::size_t cut_off = 0;
+  for (const jam::StepJam& jam : stream.jams) {
+    peak = std::max(peak, jam.peak_force);
+    work += jam.work;
+    cut_off += jam.open_at_start || jam.open_at_end;
+  }
+  Json json{{"events", stream.jams.size()},
+            {"cut_off_by_the_record", cut_off},
+            {"frequency_per_s", rate_json(s.rate)},
+            {"jammed_time_s", number(s.jammed_time)},
+            {"median_duration_s", {{"value", number(s.median.value)}, {"low", number(s.median.low)}, {"high", number(s.median.high)}}},
+            {"longest_s", number(s.longest)},
+            {"largest_force_N", number(peak)},
+            {"work_J", number(work)},
+            {"fano_factor", number(s.fano)},
+            {"independent_starts_p", number(s.independence.p)}};
+  for (const jam::LawFit& law : s.laws)
+    json["laws"][law.name] = {{"parameters", law.fit.parameter}, {"log_likelihood", number(law.fit.log_likelihood)}, {"akaike", number(law.akaike)}};
+  return json;
+}
+
 Json life_json(const jam::ContactLife::Kind& kind) {
   return {{"together", number(kind.together)}, {"ended", kind.ended}, {"alive", kind.alive}};
 }
@@ -131,6 +160,9 @@ Json analysis_json(const jam::Analysis& a) {
   for (const double bound : a.criteria.survival_classes) bounds.push_back(bound);
   json["criteria"] = {{"measure", word(a.criteria.measure)},
                       {"jam_force_N", a.criteria.jam_force},
+                      {"end_force_N", a.criteria.end_force.value_or(a.criteria.jam_force)},
+                      {"hold_off_s", a.criteria.hold_off},
+                      {"shortest_jam_s", a.criteria.shortest_jam},
                       {"bridge_contact_share", a.criteria.bridge_contact_share},
                       {"gap_margin", a.criteria.gap_margin},
                       {"survival_classes_s", bounds}};
@@ -171,6 +203,8 @@ Json analysis_json(const jam::Analysis& a) {
                                         {"share_of_jam_time", number(c.share_of_jam_time)}});
   json["frames_by_jammed_particles"] = a.jammed_histogram;
   json["flow_energy"] = {{"source", a.flow_energy.source}, {"total_J", number(a.flow_energy.total)}};
+  for (std::size_t s = 0; s < a.every_step.size(); ++s)
+    json["jams_at_every_step"][std::string(jam::jam_stream_names[s])] = step_stream_json(a.every_step[s]);
   if (!a.contact_life.empty()) {
     Json& life = json["contact_life"];
     life["median_s"] = {{"particles", number(jam::median_life(a.contact_life, &jam::ContactLife::particles))},
@@ -286,6 +320,7 @@ void write_outputs(const std::string& folder, const jam::RunInfo& info, const ja
                    const jam::Series& series, const RunFacts& facts) {
   const auto in_folder = [&](const char* name) { return (fs::path(folder) / name).string(); };
   write_text_file(in_folder("events.csv"), jam::events_csv(analysis));
+  if (const std::string jams = jam::step_jams_csv(analysis); !jams.empty()) write_text_file(in_folder("jams.csv"), jams);
   write_text_file(in_folder("summary.json"), summary_json(info, analysis, series, facts));
   jam::write_results(in_folder("jam.h5"), analysis, info);
   write_text_file(in_folder("report.html"), report_html(info, analysis, series, report_context(info, facts)));

@@ -45,7 +45,7 @@ class Run {
         scene_(dem::make_scene(file.physics, file.walls)),
         info_(run_info(file, scene_, options.command_line)),
         pipeline_(info_, file.criteria) {
-    scene_.setup.watch_force = file.criteria.jam_force;
+    scene_.setup.watch_force = info_.watch_force;
   }
 
   void begin() {

@@ -47,4 +47,25 @@ std::string events_csv(std::span<const JamEvent> events, std::span<const Track> 
   return csv;
 }
 
+std::string_view step_jams_header() {
+  return "stream,start_s,end_s,duration_s,open_at_start,open_at_end,peak_force_N,peak_time_s,peak_particle,site,impulse_Ns,work_J,path_m,"
+         "turned_rad,stays,members\n";
+}
+
+std::string step_jams_rows(JamStream stream, std::span<const StepJam> jams) {
+  std::string csv;
+  for (const StepJam& j : jams) {
+    csv += jam_stream_names[std::size_t(stream)];
+    for (const std::string& cell :
+         {printed(j.start), printed(j.end), printed(j.duration), printed(int{j.open_at_start}), printed(int{j.open_at_end}), printed(j.peak_force),
+          printed(j.peak_time), printed(j.peak_particle), printed(j.site), printed(j.impulse), printed(j.work), printed(j.path), printed(j.turned),
+          printed(j.stays), joined(j.members)}) {
+      csv += ',';
+      csv += cell;
+    }
+    csv += '\n';
+  }
+  return csv;
+}
+
 }  // namespace jam

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "libjam/events/event.hpp"
+#include "libjam/events/every_step.hpp"
 
 namespace jam {
 
@@ -13,5 +14,9 @@ namespace jam {
 // ";", an open bracket ends in "inf". Numbers have as many digits as give back the same double, so identical analyses
 // give identical bytes.
 std::string events_csv(std::span<const JamEvent> events, std::span<const Track> tracks);
+
+// Jams seen at every step: a header, and one row per jam of a stream, in the same manner.
+std::string_view step_jams_header();
+std::string step_jams_rows(JamStream stream, std::span<const StepJam> jams);
 
 }  // namespace jam

@@ -33,6 +33,10 @@ void expect_role(const RunInfo& info, WallRole role, const char* name) {
 
 void check_criteria(const Criteria& criteria, const RunInfo& info) {
   expect_not_negative("jam_force", criteria.jam_force);
+  expect_not_negative("hold_off", criteria.hold_off);
+  expect_not_negative("shortest_jam", criteria.shortest_jam);
+  if (criteria.end_force && !(*criteria.end_force >= 0 && *criteria.end_force <= criteria.jam_force))
+    refuse("criteria: end_force = ", *criteria.end_force, " N, expected 0 to jam_force = ", criteria.jam_force, " N");
   expect_not_negative("bridge_contact_share", criteria.bridge_contact_share);
   expect_not_negative("gap_margin", criteria.gap_margin);
   double previous = 0;

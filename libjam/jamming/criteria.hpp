@@ -17,6 +17,10 @@ enum class CompressiveMeasure {
 struct Criteria {
   CompressiveMeasure measure = CompressiveMeasure::sum;
   double jam_force = 20.0;  // N; a particle is jammed when its compressive force is larger (paper, section 3.2)
+  // Jams seen at every step (libjam/events/every_step.hpp) last until the force falls to end_force, N; nothing: jam_force. Pauses of up to
+  // hold_off, s, do not end them, and those shorter than shortest_jam, s, do not count.
+  std::optional<double> end_force = std::nullopt;
+  double hold_off = 0, shortest_jam = 0;
   // A contact belongs to a jam's load path when its normal force exceeds this share of jam_force.
   double bridge_contact_share = 0.1;
   // A particle sits in the gap when its centre is farther than tip radius - gap_margin * its diameter from the axis and

@@ -151,6 +151,7 @@ struct RunInfo {
   std::vector<std::vector<Interaction>> interactions;  // [M][M], symmetric; or empty
   std::vector<Wall> walls;
   Gap gap;
+  double watch_force = 0;  // N, excursions are stays above it; 0 where there are none
   bool wall_loads_known = true;  // WallState::force and torque were recorded, not left at zero
 };
 

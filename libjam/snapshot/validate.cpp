@@ -194,6 +194,7 @@ void check_pw(const WallContacts& c, std::size_t particles, const RunInfo& info,
 void validate(const RunInfo& info, const std::string& place) {
   check_finite(info.gravity, "gravity", place);
   check_not_negative(info.dt, "dt", place);
+  check_not_negative(info.watch_force, "watch_force", place);
   check_not_negative(info.gap.tip_radius, "gap tip radius", place);
   check_not_negative(info.gap.vessel_radius, "gap vessel radius", place);
   check_finite(info.gap.z_low, "gap z_low", place);

@@ -70,9 +70,9 @@ double largest_at(double low, double high, F f) {
 }
 
 // Both parameters by one search within the other; `inner` gives the range of the second.
-template <class Range, class Of>
-DurationFit nested(LogOf log_density, LogOf log_share, std::span<const Lifetime> durations, double t0, Range outer, Range inner, Of parameters) {
-  const auto at = [&](double x, double y) { return log_likelihood(log_density, log_share, durations, t0, parameters(x, y)); };
+template <class Range, class Of, class Likelihood>
+DurationFit nested(Range outer, Range inner, Of parameters, Likelihood likelihood) {
+  const auto at = [&](double x, double y) { return likelihood(parameters(x, y)); };
   const auto best_inner = [&](double x) { return largest_at(inner.first, inner.second, [&](double y) { return at(x, y); }); };
   const double x = largest_at(outer.first, outer.second, [&](double candidate) { return at(candidate, best_inner(candidate)); });
   const double y = best_inner(x);
@@ -123,8 +123,9 @@ DurationFit fit_log_normal(std::span<const Lifetime> durations, double t0) {
   if (e.ended == 0 || e.excess == 0) return {};
   // log(t) relative to the largest, in units that make both searches short.
   const double top = std::log(e.largest);
-  return nested(log_normal_log_density, log_normal_log_share, durations, t0, std::pair(std::log(0.01), std::log(20.0)), std::pair(-60.0, 6.0),
-                [&](double log_sigma, double mu) { return Parameters{top + mu, std::exp(log_sigma)}; });
+  return nested(std::pair(std::log(0.01), std::log(20.0)), std::pair(-60.0, 6.0),
+                [&](double log_sigma, double mu) { return Parameters{top + mu, std::exp(log_sigma)}; },
+                [&](const Parameters& p) { return log_likelihood(log_normal_log_density, log_normal_log_share, durations, t0, p); });
 }
 
 DurationFit fit_power(std::span<const Lifetime> durations, double t0) {
@@ -137,8 +138,25 @@ DurationFit fit_power(std::span<const Lifetime> durations, double t0) {
 DurationFit fit_cut_off(std::span<const Lifetime> durations, double t0) {
   const Extent e = extent(durations, t0);
   if (!(t0 > 0) || e.ended == 0 || e.log_excess == 0) return {};
-  return nested(cut_off_log_density, cut_off_log_share, durations, t0, std::pair(-2.0, 6.0), std::pair(std::log(1e-3), std::log(1e3)),
-                [&](double alpha, double log_tau) { return Parameters{alpha, e.largest * std::exp(log_tau)}; });
+  // The same sum as log_likelihood() takes, with the integral at t0 once instead of for each duration.
+  double ended_excess = 0, ended_log_excess = 0;
+  std::vector<double> cut_off;
+  for (const Lifetime& d : durations) {
+    if (d.time < t0) continue;
+    if (d.ended) {
+      ended_excess += d.time - t0;
+      ended_log_excess += std::log(d.time / t0);
+    } else {
+      cut_off.push_back(d.time);
+    }
+  }
+  const auto likelihood = [&](const Parameters& p) {
+    double sum = -e.ended * (std::log(t0) + log_cut_off_tail(t0, p)) - p[0] * ended_log_excess - ended_excess / p[1];
+    for (const double t : cut_off) sum += cut_off_log_share(t, t0, p);
+    return std::isfinite(sum) ? sum : -std::numeric_limits<double>::max();
+  };
+  return nested(std::pair(-2.0, 6.0), std::pair(std::log(1e-3), std::log(1e3)),
+                [&](double alpha, double log_tau) { return Parameters{alpha, e.largest * std::exp(log_tau)}; }, likelihood);
 }
 
 constexpr DurationLaw table[] = {

@@ -37,6 +37,8 @@ Analysis busy_analysis() {
   Criteria criteria;
   criteria.measure = CompressiveMeasure::signed_;
   criteria.jam_force = 12.5;
+  criteria.end_force = 11.5;
+  criteria.hold_off = 1e-4;
   criteria.metrics = {"bridge_strength", "fabric_anisotropy", "coordination", "bridge_strength"};
   Pipeline pipeline(hand_made_run(), criteria);
   for (unsigned k = 0; k < 20; ++k) {
@@ -48,6 +50,9 @@ Analysis busy_analysis() {
     pipeline.add(frame);
   }
   Analysis analysis = pipeline.finish({});
+  StepJam jam{.start = 0.001, .end = 0.002, .duration = 0.0010001, .open_at_end = true, .peak_force = 31, .peak_time = 0.0015, .peak_particle = 7};
+  jam.site = 3, jam.impulse = 0.02, jam.work = 1e-5, jam.path = 2e-4, jam.turned = 0.3, jam.stays = 2, jam.members = {7, 9};
+  analysis.every_step = {{{jam, jam}, {}}, {{}, {}}, {{jam}, {}}};
   analysis.contact_life = {{1e-6, 2e-6, {3, 4, 1.0}, {0, 2, std::nan("")}}, {2e-6, 4e-6, {5, 6, 0.75}, {7, 8, 0.5}}};
   return analysis;
 }
@@ -156,6 +161,11 @@ void expect_same(const Analysis& a, const Analysis& b) {
   EXPECT_EQ(a.flow_energy.power, b.flow_energy.power);
   EXPECT_EQ(a.flow_energy.energy, b.flow_energy.energy);
   EXPECT_EQ(a.flow_energy.total, b.flow_energy.total);
+  ASSERT_EQ(a.every_step.size(), b.every_step.size());
+  EXPECT_EQ(step_jams_csv(a), step_jams_csv(b));
+  EXPECT_EQ(a.criteria.end_force, b.criteria.end_force);
+  EXPECT_EQ(a.criteria.hold_off, b.criteria.hold_off);
+  EXPECT_EQ(a.criteria.shortest_jam, b.criteria.shortest_jam);
   ASSERT_EQ(a.contact_life.size(), b.contact_life.size());
   for (std::size_t k = 0; k < a.contact_life.size(); ++k) {
     EXPECT_EQ(a.contact_life[k].from, b.contact_life[k].from);

@@ -74,6 +74,7 @@ inline RunInfo info() {
   plate.sphere_centre = {{0, 0, 0}, {0.001, 0.002, 0}};
   plate.sphere_radius = {0.0005, 0.0006};
   r.walls = {vessel, blade, floor, hopper, lid, plate};  // not in the order of their names
+  r.watch_force = 12.5;
   r.gap = {0.0235, 0.025, -0.003, 0.003};
   return r;
 }
