@@ -50,8 +50,9 @@ Analysis busy_analysis() {
     pipeline.add(frame);
   }
   Analysis analysis = pipeline.finish({});
-  StepJam jam{.start = 0.001, .end = 0.002, .duration = 0.0010001, .open_at_end = true, .peak_force = 31, .peak_time = 0.0015, .peak_particle = 7};
-  jam.site = 3, jam.impulse = 0.02, jam.work = 1e-5, jam.path = 2e-4, jam.turned = 0.3, jam.stays = 2, jam.members = {7, 9};
+  StepJam jam;
+  jam.start = 0.001, jam.end = 0.002, jam.duration = 0.0010001, jam.open_at_end = true, jam.peak_force = 31, jam.peak_time = 0.0015;
+  jam.peak_particle = 7, jam.site = 3, jam.impulse = 0.02, jam.work = 1e-5, jam.path = 2e-4, jam.turned = 0.3, jam.stays = 2, jam.members = {7, 9};
   analysis.every_step = {{{jam, jam}, {}}, {{}, {}}, {{jam}, {}}};
   analysis.contact_life = {{1e-6, 2e-6, {3, 4, 1.0}, {0, 2, std::nan("")}}, {2e-6, 4e-6, {5, 6, 0.75}, {7, 8, 0.5}}};
   return analysis;

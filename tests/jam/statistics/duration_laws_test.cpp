@@ -91,7 +91,7 @@ TEST_P(EveryDurationLaw, FindsItsOwnParameters) {
   for (int k = 0; k < 3000; ++k) {
     const double log_share = std::log(uniform());
     double low = t0, high = 1e3;
-    for (int b = 0; b < 200; ++b) {
+    for (int b = 0; b < 60; ++b) {
       const double middle = std::sqrt(low * high);
       (law.log_share(middle, t0, truth) > log_share ? low : high) = middle;
     }
