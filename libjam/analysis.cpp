@@ -12,6 +12,7 @@
 #include "libjam/jamming/check_criteria.hpp"
 #include "libjam/jamming/compressive_force.hpp"
 #include "libjam/jamming/gap.hpp"
+#include "libjam/jamming/jam_criteria.hpp"
 #include "libjam/jamming/jam_clusters.hpp"
 #include "libjam/metrics/metrics.hpp"
 #include "libjam/metrics/coordination.hpp"
@@ -211,9 +212,11 @@ Analysis Pipeline::finish(const Series& series) const {
 
   if (info_.watch_force > 0 && info_.dt > 0 && !series.excursion_count.empty()) {
     const double end_force = a.criteria.end_force.value_or(a.criteria.jam_force);
-    if (end_force < info_.watch_force) note("the run watched particles above ", info_.watch_force, " N: jams of every step end there, not at ", end_force, " N");
-    if (end_force > info_.watch_force) note("jams of every step last until the force falls to ", info_.watch_force, " N, which the run watched");
-    const Detector detector{a.criteria.jam_force, info_.watch_force, a.criteria.hold_off, a.criteria.shortest_jam};
+    const bool by_force = criterion_of(a.criteria).unit == "N";
+    if (by_force && end_force < info_.watch_force) note("the run watched particles above ", info_.watch_force, " N: jams of every step end there, not at ", end_force, " N");
+    if (by_force && end_force > info_.watch_force) note("jams of every step last until the force falls to ", info_.watch_force, " N, which the run watched");
+    if (!by_force) note("jams of every step are those above the ", info_.watch_force, " N that the run watched, not by the criterion ", a.criteria.criterion);
+    const Detector detector{by_force ? a.criteria.jam_force : info_.watch_force, info_.watch_force, a.criteria.hold_off, a.criteria.shortest_jam};
     const Sites sites{.z_low = info_.gap.z_low, .z_high = info_.gap.z_high};
     const Excursions stays = last_word(series.excursions);
     const std::uint64_t first_step = a.frames.empty() ? 0 : a.frames.front().step;

@@ -275,6 +275,8 @@ void write_criteria(h5::File& file, const Criteria& criteria) {
     }
   }
   write_scalars(file, "/criteria", criteria);
+  file.write_text("/criteria/criterion", criteria.criterion, "what jammed means");
+  if (criteria.threshold) file.write("/criteria/threshold", std::vector<double>{*criteria.threshold}, "1", "of the criterion, in its unit");
   if (criteria.end_force) file.write("/criteria/end_force", std::vector<double>{*criteria.end_force}, "N", "jams seen at every step last until it");
   file.write("/criteria/survival_classes", criteria.survival_classes, "s", "upper bounds of the survival-time classes");
 }
@@ -289,6 +291,8 @@ Criteria read_criteria(const h5::File& file) {
   }
   criteria.measure = row->measure;
   read_scalars(file, "/criteria", criteria);
+  if (file.exists("/criteria/criterion")) criteria.criterion = file.read_text("/criteria/criterion");
+  if (file.exists("/criteria/threshold")) criteria.threshold = read_one<double>(file, "/criteria/threshold");
   if (file.exists("/criteria/end_force")) criteria.end_force = read_one<double>(file, "/criteria/end_force");
   criteria.survival_classes = file.read<double>("/criteria/survival_classes");
   return criteria;

@@ -9,6 +9,7 @@
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/outputs.hpp"
 #include "apps/jamscope/settled_bed.hpp"
+#include "apps/jamscope/simulation_view.hpp"
 #include "libdem/case/derived.hpp"
 #include "libdem/simulation/simulation.hpp"
 
@@ -118,7 +119,7 @@ int bench(const BenchOptions& options) {
   catch_stop_signals();
   try {
     dem::Scene scene = dem::make_scene(file.physics, file.walls);
-    scene.setup.watch_force = file.criteria.end_force.value_or(file.criteria.jam_force);
+    scene.setup.watch_force = watch_force(file);
     if (options.uniform) scene.setup.levels = 0;
     dem::SettledBed bed = settled_bed(file, scene, options.bed_cache, console);
     const Measured m = measure(scene.setup, std::move(bed.state), options, console);

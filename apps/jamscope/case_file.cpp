@@ -14,6 +14,7 @@
 #include "libdem/case/check_case.hpp"
 #include "libdem/contact/laws.hpp"
 #include "libdem/errors.hpp"
+#include "libjam/jamming/jam_criteria.hpp"
 #include "libjam/metrics/metrics.hpp"
 
 namespace jamscope {
@@ -213,6 +214,10 @@ void read_analysis(Section analysis, Document& document, jam::Criteria& criteria
   analysis.choice("measure", {{"sum", Measure::sum}, {"max", Measure::max}, {"signed", Measure::signed_}},
                   criteria.measure, optional);
   analysis.quantity("jam_force", dimension::force, criteria.jam_force, optional);
+  std::vector<std::pair<std::string, std::string>> criteria_by_name;
+  for (const jam::JamCriterion& row : jam::jam_criteria()) criteria_by_name.emplace_back(row.name, row.name);
+  analysis.choice("criterion", criteria_by_name, criteria.criterion, optional);
+  if (double threshold = 0; analysis.number("threshold", threshold, optional)) criteria.threshold = threshold;
   if (double force = 0; analysis.quantity("end_force", dimension::force, force, optional)) criteria.end_force = force;
   analysis.quantity("hold_off", dimension::time, criteria.hold_off, optional);
   analysis.quantity("shortest_jam", dimension::time, criteria.shortest_jam, optional);
@@ -226,6 +231,8 @@ void read_analysis(Section analysis, Document& document, jam::Criteria& criteria
     document.problem(std::string("analysis.") + key, fmt::format("'{}' {}", key, message));
   };
   if (!(criteria.jam_force > 0)) refuse("jam_force", fmt::format("must be positive, got {} N", criteria.jam_force));
+  if (criteria.threshold && criteria.criterion == "compressive_force") refuse("threshold", "belongs to the criteria without a unit; of compressive_force it is jam_force");
+  if (criteria.threshold && !(*criteria.threshold >= 0)) refuse("threshold", fmt::format("must not be negative, got {}", *criteria.threshold));
   if (criteria.end_force && !(*criteria.end_force > 0 && *criteria.end_force <= criteria.jam_force))
     refuse("end_force", fmt::format("must be positive and at most jam_force = {} N, got {} N", criteria.jam_force, *criteria.end_force));
   if (!(criteria.hold_off >= 0)) refuse("hold_off", fmt::format("must not be negative, got {} s", criteria.hold_off));

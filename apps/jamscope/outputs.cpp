@@ -21,6 +21,7 @@
 #include "jamscope/version.hpp"
 #include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
+#include "libjam/jamming/jam_criteria.hpp"
 #include "libjam/results_file.hpp"
 #include "libjam/snapshot/schema.hpp"
 
@@ -158,7 +159,9 @@ Json analysis_json(const jam::Analysis& a) {
   Json json;
   Json bounds = Json::array();
   for (const double bound : a.criteria.survival_classes) bounds.push_back(bound);
-  json["criteria"] = {{"measure", word(a.criteria.measure)},
+  json["criteria"] = {{"criterion", a.criteria.criterion},
+                      {"threshold", number(jam::threshold_of(a.criteria))},
+                      {"measure", word(a.criteria.measure)},
                       {"jam_force_N", a.criteria.jam_force},
                       {"end_force_N", a.criteria.end_force.value_or(a.criteria.jam_force)},
                       {"hold_off_s", a.criteria.hold_off},

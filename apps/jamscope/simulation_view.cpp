@@ -6,6 +6,7 @@
 
 #include "apps/jamscope/outputs.hpp"
 #include "apps/jamscope/sha256.hpp"
+#include "libjam/jamming/jam_criteria.hpp"
 
 namespace jamscope {
 namespace {
@@ -133,6 +134,13 @@ std::string wall_kind(const dem::WallShape& shape) {
   return info.kind;
 }
 
+double watch_force(const CaseFile& file) {
+  const jam::Criteria& criteria = file.criteria;
+  if (jam::criterion_of(criteria).unit == "N") return criteria.end_force.value_or(criteria.jam_force);
+  const dem::Material& m = file.physics.materials[dem::material_index(file.physics, file.physics.bed.material)];
+  return jam::threshold_of(criteria) * jam::hertz_scale({m.name, m.density, m.young, m.poisson}, file.physics.bed.mean_diameter / 2);
+}
+
 jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::vector<std::string>& argv) {
   const dem::Setup& setup = scene.setup;
   jam::RunInfo info;
@@ -154,7 +162,7 @@ jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::
   }
   for (std::size_t w = 0; w < setup.walls.size(); ++w)
     info.walls.push_back(wall_info(setup.walls[w], role_of(scene.roles[w]), setup.materials[setup.walls[w].material].name));
-  info.watch_force = file.criteria.end_force.value_or(file.criteria.jam_force);
+  info.watch_force = watch_force(file);
   if (const auto& gap = scene.gap) info.gap = {gap->tip_radius, gap->vessel_radius, gap->blade_low, gap->blade_high};
   return info;
 }

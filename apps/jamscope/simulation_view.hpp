@@ -10,6 +10,9 @@ namespace jamscope {
 // "plane", "cylinder", "cone", "disc", "spheres" or "mesh", as in a snapshot file.
 std::string wall_kind(const dem::WallShape& shape);
 
+// N, above which a run follows its grains from step to step: where a jam by force ends, else the criterion's threshold for a grain of mean size.
+double watch_force(const CaseFile& file);
+
 // Everything a snapshot file says once about its run.
 jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::vector<std::string>& argv);
 

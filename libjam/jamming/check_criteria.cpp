@@ -5,6 +5,8 @@
 #include <sstream>
 
 #include "libjam/errors.hpp"
+#include "libjam/jamming/gap.hpp"
+#include "libjam/jamming/jam_criteria.hpp"
 
 namespace jam {
 namespace {
@@ -32,6 +34,17 @@ void expect_role(const RunInfo& info, WallRole role, const char* name) {
 }  // namespace
 
 void check_criteria(const Criteria& criteria, const RunInfo& info) {
+  const JamCriterion* criterion = find_jam_criterion(criteria.criterion);
+  if (criterion == nullptr) {
+    std::string names;
+    for (const JamCriterion& row : jam_criteria()) names += (names.empty() ? "" : ", ") + std::string(row.name);
+    refuse("criteria: criterion = \"", criteria.criterion, "\", expected one of ", names);
+  }
+  if (criteria.threshold) expect_not_negative("threshold", *criteria.threshold);
+  const auto has_stiffness = [](const Material& m) { return m.young > 0; };
+  if (criterion->of_stiffness && (info.materials.empty() || !std::all_of(info.materials.begin(), info.materials.end(), has_stiffness)))
+    refuse("criteria: criterion = \"", criteria.criterion, "\" needs the Young's modulus of all materials, which the data do not have");
+  if (criterion->of_gap && !gap_known(info)) refuse("criteria: criterion = \"", criteria.criterion, "\" needs the gap between blade tip and vessel, which the data do not have");
   expect_not_negative("jam_force", criteria.jam_force);
   expect_not_negative("hold_off", criteria.hold_off);
   expect_not_negative("shortest_jam", criteria.shortest_jam);

@@ -16,6 +16,10 @@ enum class CompressiveMeasure {
 
 struct Criteria {
   CompressiveMeasure measure = CompressiveMeasure::sum;
+  // What jammed means, a name of libjam/jamming/jam_criteria.cpp, and its threshold in its own unit; nothing: the one of its row. Of
+  // compressive_force the threshold is jam_force.
+  std::string criterion = "compressive_force";
+  std::optional<double> threshold = std::nullopt;
   double jam_force = 20.0;  // N; a particle is jammed when its compressive force is larger (paper, section 3.2)
   // Jams seen at every step (libjam/events/every_step.hpp) last until the force falls to end_force, N; nothing: jam_force. Pauses of up to
   // hold_off, s, do not end them, and those shorter than shortest_jam, s, do not count.

@@ -5,6 +5,7 @@
 #include "libjam/graph/components.hpp"
 #include "libjam/graph/contact_force.hpp"
 #include "libjam/jamming/gap.hpp"
+#include "libjam/jamming/jam_criteria.hpp"
 
 namespace jam {
 namespace {
@@ -29,9 +30,10 @@ WallLoad wall_load(const ContactGraph& graph, ContactGraph::Vertex v, WallRole r
 std::vector<JammedParticle> jammed_particles(const ContactGraph& graph, const std::vector<double>& compressive_force,
                                              const RunInfo& info, const Criteria& criteria) {
   std::vector<JammedParticle> jammed;
+  const std::vector<double> limit = jam_limits(graph, info, criteria);
   for (ContactGraph::Vertex v = 0; v < graph.vertex_count(); ++v) {
-    if (compressive_force[v] > criteria.jam_force) {
-      jammed.push_back({v, compressive_force[v], in_gap(graph.snapshot(), v, info, criteria)});
+    if (compressive_force[v] > limit[v]) {
+      jammed.push_back({v, compressive_force[v], in_gap(graph.snapshot(), v, info, criteria), limit[v]});
     }
   }
   return jammed;
@@ -40,12 +42,11 @@ std::vector<JammedParticle> jammed_particles(const ContactGraph& graph, const st
 std::vector<Cluster> jam_clusters(const ContactGraph& graph, const std::vector<JammedParticle>& jammed,
                                   const Criteria& criteria, std::uint32_t frame) {
   if (jammed.empty()) return {};
-  const double load_path_force = criteria.bridge_contact_share * criteria.jam_force;
-  std::vector<std::uint8_t> is_jammed(graph.vertex_count(), 0), on_load_path(graph.edge_count(), 0);
+  std::vector<std::uint8_t> is_jammed(graph.vertex_count(), 0), on_load_path(graph.edge_count(), 1);
   for (const JammedParticle& p : jammed) {
     is_jammed[p.row] = 1;
     for (const ContactGraph::Neighbor& n : graph.neighbors(p.row)) {
-      on_load_path[n.contact] = repulsive_force(graph.snapshot().pp, n.contact) > load_path_force;
+      on_load_path[n.contact] &= repulsive_force(graph.snapshot().pp, n.contact) > criteria.bridge_contact_share * p.limit;
     }
   }
   const Components components = connected_components(graph, is_jammed, on_load_path);
@@ -59,6 +60,7 @@ std::vector<Cluster> jam_clusters(const ContactGraph& graph, const std::vector<J
     cluster.members.push_back(graph.snapshot().particles.id[p.row]);
     cluster.largest_compressive_force = std::max(cluster.largest_compressive_force, p.compressive_force);
     cluster.in_gap += p.in_gap;
+    const double load_path_force = criteria.bridge_contact_share * p.limit;
     const WallLoad blade = wall_load(graph, p.row, WallRole::blade, load_path_force);
     const WallLoad vessel = wall_load(graph, p.row, WallRole::vessel, load_path_force);
     cluster.blade_force += blade.force;
