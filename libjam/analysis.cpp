@@ -194,6 +194,7 @@ Analysis Pipeline::finish(const Series& series) const {
   a.tracks = particle_tracks(jam_frames_, a.sampling_interval);
   a.jammed_time = jammed_time(a.events);
   a.jam_frequency = a.observed_time > 0 ? static_cast<double>(a.events.size()) / a.observed_time : 0.0;
+  a.corrected = corrected_for_sampling(a.events, a.sampling_interval, a.observed_time);
   a.survival_classes = survival_classes(a.events, a.criteria.survival_classes, a.sampling_interval, a.observed_time);
   a.jammed_histogram = jammed_histogram(jam_frames_);
   const auto open = std::count_if(a.events.begin(), a.events.end(),

@@ -20,6 +20,7 @@
 #include "libjam/statistics/contact_life.hpp"
 #include "libjam/statistics/flow_energy.hpp"
 #include "libjam/statistics/jam_statistics.hpp"
+#include "libjam/statistics/sampled_durations.hpp"
 #include "libjam/statistics/survival.hpp"
 
 namespace jam {
@@ -58,6 +59,7 @@ struct Analysis {
   std::vector<std::uint32_t> jammed_histogram;  // [n] = number of frames with n jammed particles (Fig. 12)
   double jammed_time = 0;                       // s, summed survival times of the global stream
   double jam_frequency = 0;                     // 1/s
+  ExponentialDurations corrected;               // what the global events say of all jams, those between frames too
   double jammed_in_gap_share = 0;  // of all jammed particle samples; NaN where there are none or the gap is not known
   FlowEnergy flow_energy;
   // Jams as the simulation saw them at every step, by JamStream; empty where the source did not watch.

@@ -152,8 +152,6 @@ void scalars_of(Analysis*, Visit&& scalar) {
 template <class Visit>
 void scalars_of(Criteria*, Visit&& scalar) {
   scalar("jam_force", &Criteria::jam_force, "N", "a particle is jammed above this compressive force");
-  scalar("hold_off", &Criteria::hold_off, "s", "pauses up to it do not end a jam seen at every step");
-  scalar("shortest_jam", &Criteria::shortest_jam, "s", "shorter ones do not count");
   scalar("bridge_contact_share", &Criteria::bridge_contact_share, "1",
          "of jam_force: contacts above it carry the load");
   scalar("gap_margin", &Criteria::gap_margin, "1", "particle diameters inside the tip circle that count as gap");
@@ -276,6 +274,8 @@ void write_criteria(h5::File& file, const Criteria& criteria) {
   }
   write_scalars(file, "/criteria", criteria);
   file.write_text("/criteria/criterion", criteria.criterion, "what jammed means");
+  file.write("/criteria/hold_off", std::vector<double>{criteria.hold_off}, "s", "pauses up to it do not end a jam seen at every step");
+  file.write("/criteria/shortest_jam", std::vector<double>{criteria.shortest_jam}, "s", "shorter ones do not count");
   if (criteria.threshold) file.write("/criteria/threshold", std::vector<double>{*criteria.threshold}, "1", "of the criterion, in its unit");
   if (criteria.end_force) file.write("/criteria/end_force", std::vector<double>{*criteria.end_force}, "N", "jams seen at every step last until it");
   file.write("/criteria/survival_classes", criteria.survival_classes, "s", "upper bounds of the survival-time classes");
@@ -291,6 +291,9 @@ Criteria read_criteria(const h5::File& file) {
   }
   criteria.measure = row->measure;
   read_scalars(file, "/criteria", criteria);
+  // Not in files of schema 1.1.
+  if (file.exists("/criteria/hold_off")) criteria.hold_off = read_one<double>(file, "/criteria/hold_off");
+  if (file.exists("/criteria/shortest_jam")) criteria.shortest_jam = read_one<double>(file, "/criteria/shortest_jam");
   if (file.exists("/criteria/criterion")) criteria.criterion = file.read_text("/criteria/criterion");
   if (file.exists("/criteria/threshold")) criteria.threshold = read_one<double>(file, "/criteria/threshold");
   if (file.exists("/criteria/end_force")) criteria.end_force = read_one<double>(file, "/criteria/end_force");
@@ -454,6 +457,7 @@ Analysis read_results(const std::filesystem::path& path) {
   }
   if (file.exists("/contact_life")) analysis.contact_life = life_of(read_table<ContactLifeRow>(file, "/contact_life"));
   analysis.notes = file.read_texts("/notes");
+  analysis.corrected = corrected_for_sampling(analysis.events, analysis.sampling_interval, analysis.observed_time);
   check_frame_rows(file, analysis);
   return analysis;
 }

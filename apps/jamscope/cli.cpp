@@ -15,6 +15,7 @@
 #include "apps/jamscope/bench.hpp"
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/check.hpp"
+#include "apps/jamscope/compare.hpp"
 #include "apps/jamscope/checkpoint.hpp"
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/inspect.hpp"
@@ -41,6 +42,7 @@ struct Options {
   AnalyzeOptions analyze;
   InspectOptions inspect;
   MetricsOptions metrics;
+  CompareOptions compare;
   BenchOptions bench;
 };
 
@@ -209,6 +211,20 @@ Command add_metrics(CLI::App& app, Options& o) {
   return [&o] { return network_metrics(o.metrics); };
 }
 
+Command add_compare(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("compare", "jams of several runs side by side, and whether they differ");
+  CompareOptions& m = o.compare;
+  c.add_option("RUN", m.runs, "folders with results, or their jam.h5; the first is compared with each of the others")->required()->type_name("");
+  const std::map<std::string, CompareBy> ways{{"step", CompareBy::step}, {"frame", CompareBy::frame}};
+  c.add_option("--by", m.by, "jams of every step (default), or those of frames, with rates corrected for what frames miss")
+      ->transform(one_of(ways))
+      ->type_name("step|frame");
+  c.add_option("--stream", m.stream, "of every step: any grain's jams as one (default), each grain's, or each site's")->type_name("global|particle|site");
+  c.add_flag("--json", m.json, "for machines");
+  c.footer("Example:\n  jamscope compare down up\n  jamscope compare seed1 seed2 seed3 --stream particle");
+  return [&o] { return compare(o.compare); };
+}
+
 Command add_bench(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("bench", "measure how fast this machine steps a case, and where the time goes");
   BenchOptions& b = o.bench;
@@ -236,7 +252,7 @@ using AddCommand = Command (*)(CLI::App&, Options&);
 constexpr AddCommand commands[] = {
     add_check,
     add_simulate,
-    add_analyze,  add_inspect, add_metrics, add_bench,
+    add_analyze,  add_inspect, add_metrics, add_compare, add_bench,
 };
 
 int fail(int code, const std::string& message) {

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace jam {
 namespace {
@@ -20,7 +21,8 @@ double seen_with_samples(std::uint64_t n, double duration, double interval) {
   return std::max(0.0, 1 - std::abs(duration / interval - double(n)));
 }
 
-ExponentialDurations exponential_durations(std::span<const std::uint32_t> samples, double interval, double observed_time, double confidence) {
+ExponentialDurations exponential_durations(std::span<const std::uint32_t> samples, double interval, double observed_time, double confidence,
+                                           std::uint64_t cut_off) {
   if (samples.empty() || !(interval > 0)) return {nan, nan, nan, nan, {nan, nan, nan}};
   const double events = double(samples.size());
   double more = 0;  // samples beyond each one's first: failures before so many successes
@@ -36,11 +38,25 @@ ExponentialDurations exponential_durations(std::span<const std::uint32_t> sample
   };
   const double outside = 1 - confidence;
   std::tie(found.low, found.high) = mean_between(outside / 2);
-  const Rate seen = poisson_rate(samples.size(), observed_time, 1 - outside / 2);
+  const Rate seen = poisson_rate(samples.size() + cut_off, observed_time, 1 - outside / 2);
   const auto [shortest, longest] = mean_between(outside / 4);
   found.rate = {seen.value / seen_share(found.mean, interval), seen.low / seen_share(longest, interval),
                 seen.high / seen_share(shortest, interval)};
   return found;
+}
+
+ExponentialDurations corrected_for_sampling(std::span<const JamEvent> events, double interval, double observed_time, double confidence) {
+  std::vector<std::uint32_t> samples;
+  std::uint64_t cut_off = 0;
+  for (const JamEvent& e : events) {
+    if (e.open_at_start) continue;
+    if (e.open_at_end) {
+      ++cut_off;
+    } else {
+      samples.push_back(e.samples);
+    }
+  }
+  return exponential_durations(samples, interval, observed_time, confidence, cut_off);
 }
 
 }  // namespace jam

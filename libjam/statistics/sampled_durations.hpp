@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "libjam/events/event.hpp"
 #include "libjam/statistics/rates.hpp"
 
 namespace jam {
@@ -20,9 +21,12 @@ struct ExponentialDurations {
   double unseen = 0;                   // share of the events that no sample saw
   Rate rate;                           // 1/s, of all events; its interval holds those of the seen ones' rate and of tau at once (Bonferroni)
 };
-// `samples`: n of each event that was seen whole. `observed_time`, s. NaN without events; where every event has one sample, tau may be anything
-// from 0 on and the rate has no upper bound.
+// `samples`: n of each event that was seen whole. `observed_time`, s; `cut_off`: further events that began in it. NaN without events; where every
+// event has one sample, tau may be anything from 0 on and the rate has no upper bound.
 ExponentialDurations exponential_durations(std::span<const std::uint32_t> samples, double interval, double observed_time,
-                                           double confidence = 0.95);
+                                           double confidence = 0.95, std::uint64_t cut_off = 0);
+
+// Of the events of a stream that frames have seen; those that the record cuts off give no duration but count for the rate.
+ExponentialDurations corrected_for_sampling(std::span<const JamEvent> events, double interval, double observed_time, double confidence = 0.95);
 
 }  // namespace jam

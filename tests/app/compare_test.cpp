@@ -1,0 +1,81 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "libjam/results_file.hpp"
+#include "libjam/statistics/rates.hpp"
+#include "tests/app/program.hpp"
+
+namespace jamscope {
+namespace {
+
+using testing::HasSubstr;
+
+// A folder with the results of a record of 2 s in which jams of these durations, s, began every 50 ms.
+std::string record(const Scratch& scratch, const std::string& name, const std::vector<double>& durations, bool every_step = true) {
+  const std::filesystem::path folder = scratch / name;
+  std::filesystem::create_directories(folder);
+  jam::Analysis a;
+  a.frames.resize(2);
+  a.frames[1].time = 2;
+  a.observed_time = 2;
+  a.sampling_interval = 2e-3;
+  if (every_step) {
+    a.every_step.resize(3);
+    for (std::size_t k = 0; k < durations.size(); ++k) {
+      jam::StepJam jam;
+      jam.start = 0.05 * double(k + 1);
+      jam.duration = durations[k];
+      jam.end = jam.start + durations[k];
+      jam.peak_force = 20 + double(k);
+      jam.work = 1e-3;
+      jam.members = {jam::ParticleId(k)};
+      a.every_step[0].jams.push_back(jam);
+    }
+  }
+  jam::write_results(folder / "jam.h5", a, jam::RunInfo{});
+  return folder.string();
+}
+
+TEST(Compare, ShowsRunsSideBySideAndTestsThem) {
+  const Scratch scratch;
+  const std::string fast = record(scratch, "fast", {1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3, 7e-3, 8e-3, 9e-3, 10e-3, 11e-3, 12e-3, 13e-3});
+  const std::string slow = record(scratch, "slow", {20e-3, 21e-3, 22e-3, 23e-3});
+  const Outcome outcome = run_program("compare " + fast + " " + slow + " --json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  const auto value = [&](std::size_t run, const char* name, const char* what = "value") { return json["runs"][run]["quantities"][name][what].get<double>(); };
+  EXPECT_EQ(value(0, "jams"), 13);
+  EXPECT_EQ(value(0, "rate"), 6.5);
+  EXPECT_DOUBLE_EQ(value(1, "rate", "low"), jam::poisson_rate(4, 2).low);
+  EXPECT_DOUBLE_EQ(value(0, "half end within"), 7);
+  EXPECT_DOUBLE_EQ(value(1, "longest"), 23);
+  EXPECT_DOUBLE_EQ(value(0, "jammed"), 100 * 91e-3 / 2);
+  EXPECT_DOUBLE_EQ(value(0, "work of walls on jammed grains"), 13);
+  EXPECT_DOUBLE_EQ(value(0, "median of peak forces"), 26);
+  // 13 against 4 of 17 coins.
+  EXPECT_NEAR(json["tests"][0]["same_rate_p"].get<double>(), jam::same_rate_probability(13, 2, 4, 2), 1e-12);
+  EXPECT_LT(json["tests"][0]["log_rank_p"].get<double>(), 0.01);
+  EXPECT_DOUBLE_EQ(json["mean_rate"]["value"].get<double>(), 4.25);
+  const Outcome text = run_program("compare " + fast + "/ " + slow + "/jam.h5 " + slow);
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("rate, 1/s"));
+  EXPECT_THAT(text.out, HasSubstr("all 3 runs"));
+}
+
+TEST(Compare, SaysWhatIsWrong) {
+  const Scratch scratch;
+  const std::string old = record(scratch, "old", {}, false);
+  const Outcome outcome = run_program("compare " + old);
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("--by frame"));
+  EXPECT_EQ(run_program("compare " + old + " --by frame").code, 0);
+  EXPECT_EQ(run_program("compare no_such_folder").code, 3);
+  EXPECT_EQ(run_program("compare " + old + " --stream grain").code, 2);
+  EXPECT_EQ(run_program("compare").code, 2);
+}
+
+}  // namespace
+}  // namespace jamscope
