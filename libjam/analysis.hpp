@@ -102,6 +102,8 @@ class Pipeline {
   ExaminedFrame examine(const Snapshot& snapshot, std::size_t frame) const;
   const FrameSummary& add(ExaminedFrame frame);
   std::size_t frames() const { return analysis_.frames.size(); }
+  // As they are applied: the metrics in the order of their table and each once.
+  const Criteria& criteria() const { return analysis_.criteria; }
   // Global events in the frames so far, the open one included. Frames that may be missing split events only in
   // finish().
   std::size_t events_so_far() const { return events_so_far_; }

@@ -2,49 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <type_traits>
 
 #include "libjam/errors.hpp"
 #include "libjam/metrics/metrics.hpp"
-#include "libjam/snapshot/hdf5.hpp"
+#include "libjam/results_tables.hpp"
 
 namespace jam {
-namespace {
-
-constexpr const char* format_name = "jamscope-analysis";
-using Version = std::array<std::uint32_t, 2>;
-constexpr Version schema_version{1, 2};  // a larger second number only adds items
-
-// The columns of each table are listed once, in a function that hands name, member, unit and doc to a visitor. Writing
-// and reading are two visitors, so they cannot disagree. To store one more member: add its line to the list.
-
-template <class Visit>
-void columns_of(FrameSummary*, Visit&& column) {
-  column("time", &FrameSummary::time, "s", "time of the frame");
-  column("step", &FrameSummary::step, "1", "step of the source's own time stepping");
-  column("particles", &FrameSummary::particles, "1", "particles in the frame");
-  column("particle_contacts", &FrameSummary::particle_contacts, "1", "contacts between particles");
-  column("wall_contacts", &FrameSummary::wall_contacts, "1", "contacts of particles with walls");
-  column("coordination", &FrameSummary::coordination, "1", "2 N_pp / N, walls not counted");
-  column("coordination_with_walls", &FrameSummary::coordination_with_walls, "1", "(2 N_pp + N_pw) / N");
-  column("largest_compressive_force", &FrameSummary::largest_compressive_force, "N", "over all particles");
-  column("mean_compressive_force", &FrameSummary::mean_compressive_force, "N", "over all particles");
-  column("largest_particle", &FrameSummary::largest_particle, "1", "id of the particle with the largest force");
-  column("jammed", &FrameSummary::jammed, "1", "particles above the jam force");
-  column("jammed_in_gap", &FrameSummary::jammed_in_gap, "1", "of those, in the gap between blade tip and vessel");
-  column("bridges", &FrameSummary::bridges, "1", "clusters that carry force from a blade to a vessel");
-  column("largest_bridge", &FrameSummary::largest_bridge, "1", "particles in the largest bridge");
-}
-
-template <class Visit>
-void columns_of(Cluster*, Visit&& column) {
-  column("frame", &Cluster::frame, "1", "row of /frames");
-  column("bridges", &Cluster::bridges, "1", "carries force from a blade to a vessel");
-  column("blade_force", &Cluster::blade_force, "N", "sum of the repulsive normal forces with blades");
-  column("vessel_force", &Cluster::vessel_force, "N", "sum of the repulsive normal forces with vessel walls");
-  column("largest_compressive_force", &Cluster::largest_compressive_force, "N", "over the members");
-  column("in_gap", &Cluster::in_gap, "1", "members in the gap");
-}
 
 template <class Visit>
 void columns_of(JamEvent*, Visit&& column) {
@@ -101,20 +64,6 @@ void columns_of(ContactLifeRow*, Visit&& column) {
   column("together_pw", &ContactLifeRow::together_pw, "1", "share of contacts with walls that is still there at `from`");
 }
 
-std::vector<ContactLifeRow> rows_of(const std::vector<ContactLife>& life) {
-  std::vector<ContactLifeRow> rows;
-  for (const ContactLife& l : life)
-    rows.push_back({l.from, l.to, l.particles.ended, l.particles.alive, l.walls.ended, l.walls.alive, l.particles.together, l.walls.together});
-  return rows;
-}
-
-std::vector<ContactLife> life_of(const std::vector<ContactLifeRow>& rows) {
-  std::vector<ContactLife> life;
-  for (const ContactLifeRow& r : rows)
-    life.push_back({r.from, r.to, {r.ended_pp, r.alive_pp, r.together_pp}, {r.ended_pw, r.alive_pw, r.together_pw}});
-  return life;
-}
-
 template <class Visit>
 void columns_of(FlowEnergy*, Visit&& column) {
   column("time", &FlowEnergy::time, "s", "end of the window, or time of the frame");
@@ -138,6 +87,26 @@ void columns_of(StepJam*, Visit&& column) {
   column("path", &StepJam::path, "m", "integral of the speed of the particle with the peak, in its stay");
   column("turned", &StepJam::turned, "rad", "integral of its angular speed");
   column("stays", &StepJam::stays, "1", "stays of particles above the force");
+}
+
+namespace {
+
+constexpr const char* format_name = "jamscope-analysis";
+using Version = std::array<std::uint32_t, 2>;
+constexpr Version schema_version{1, 2};  // a larger second number only adds items
+
+std::vector<ContactLifeRow> rows_of(const std::vector<ContactLife>& life) {
+  std::vector<ContactLifeRow> rows;
+  for (const ContactLife& l : life)
+    rows.push_back({l.from, l.to, l.particles.ended, l.particles.alive, l.walls.ended, l.walls.alive, l.particles.together, l.walls.together});
+  return rows;
+}
+
+std::vector<ContactLife> life_of(const std::vector<ContactLifeRow>& rows) {
+  std::vector<ContactLife> life;
+  for (const ContactLifeRow& r : rows)
+    life.push_back({r.from, r.to, {r.ended_pp, r.alive_pp, r.together_pp}, {r.ended_pw, r.alive_pw, r.together_pw}});
+  return life;
 }
 
 template <class Visit>
@@ -164,86 +133,6 @@ struct MeasureName {
 constexpr MeasureName measure_names[] = {
     {CompressiveMeasure::sum, "sum"}, {CompressiveMeasure::max, "max"}, {CompressiveMeasure::signed_, "signed"}};
 
-// HDF5 has no truth values: stored as 0 and 1.
-template <class T>
-using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;
-
-// `row_of(element)` is the struct whose members are the columns.
-template <class Row, class Elements, class RowOf>
-void write_table(h5::File& file, const std::string& group, const Elements& elements, RowOf row_of) {
-  file.make_group(group);
-  columns_of(static_cast<Row*>(nullptr),
-             [&]<class T>(const char* name, T Row::*member, const char* unit, const char* doc) {
-               std::vector<Stored<T>> values;
-               values.reserve(elements.size());
-               for (const auto& element : elements) values.push_back(row_of(element).*member);
-               file.write(group + "/" + name, values, unit, doc);
-             });
-}
-
-template <class Row>
-void write_table(h5::File& file, const std::string& group, const std::vector<Row>& rows) {
-  write_table<Row>(file, group, rows, [](const Row& row) -> const Row& { return row; });
-}
-
-template <class Row>
-std::vector<Row> read_table(const h5::File& file, const std::string& group) {
-  std::vector<Row> rows;
-  bool first = true;
-  columns_of(static_cast<Row*>(nullptr), [&]<class T>(const char* name, T Row::*member, const char*, const char*) {
-    const std::string path = group + "/" + name;
-    const std::vector<Stored<T>> values = file.read<Stored<T>>(path);
-    if (first) rows.resize(values.size());
-    first = false;
-    if (values.size() != rows.size()) {
-      file.fail(path, "has " + std::to_string(values.size()) + " rows, expected " + std::to_string(rows.size()) +
-                          " as in the group's first column");
-    }
-    for (std::size_t k = 0; k < rows.size(); ++k) rows[k].*member = static_cast<T>(values[k]);
-  });
-  return rows;
-}
-
-// Lists of different length, one per row, stored end to end: `PREFIX_start` and `PREFIX_count` say which part is whose.
-template <class Lists, class ListOf>
-auto write_parts(h5::File& file, const std::string& group, const std::string& prefix, const std::string& target,
-                 const Lists& lists, ListOf list_of) {
-  std::vector<std::uint64_t> start, count;
-  std::remove_cvref_t<decltype(list_of(lists.front()))> all;
-  for (const auto& owner : lists) {
-    const auto& list = list_of(owner);
-    start.push_back(all.size());
-    count.push_back(list.size());
-    all.insert(all.end(), list.begin(), list.end());
-  }
-  file.write(group + "/" + prefix + "_start", start, "1", "first row in " + target);
-  file.write(group + "/" + prefix + "_count", count, "1", "rows in " + target);
-  return all;
-}
-
-template <class T>
-std::vector<std::vector<T>> read_parts(const h5::File& file, const std::string& group, const std::string& prefix,
-                                       const std::vector<T>& all, std::size_t owners) {
-  const std::string start_name = group + "/" + prefix + "_start", count_name = group + "/" + prefix + "_count";
-  const auto start = file.read<std::uint64_t>(start_name), count = file.read<std::uint64_t>(count_name);
-  if (start.size() != owners) file.fail(start_name, "expected " + std::to_string(owners) + " rows");
-  if (count.size() != owners) file.fail(count_name, "expected " + std::to_string(owners) + " rows");
-  std::vector<std::vector<T>> lists(owners);
-  std::uint64_t end = 0;
-  for (std::size_t k = 0; k < owners; ++k) {
-    // End to end, so that no file can make many lists out of the same few rows.
-    if (start[k] != end || count[k] > all.size() - end) {
-      file.fail(start_name, "row " + std::to_string(k) + " claims [" + std::to_string(start[k]) + ", +" +
-                                std::to_string(count[k]) + "), expected parts end to end within " +
-                                std::to_string(all.size()) + " rows");
-    }
-    end += count[k];
-    lists[k].assign(all.begin() + static_cast<std::ptrdiff_t>(start[k]),
-                    all.begin() + static_cast<std::ptrdiff_t>(end));
-  }
-  return lists;
-}
-
 template <class Struct>
 void write_scalars(h5::File& file, const std::string& group, const Struct& values) {
   scalars_of(static_cast<Struct*>(nullptr),
@@ -252,19 +141,14 @@ void write_scalars(h5::File& file, const std::string& group, const Struct& value
              });
 }
 
-template <class T>
-T read_one(const h5::File& file, const std::string& path) {
-  const std::vector<T> values = file.read<T>(path);
-  if (values.size() != 1) file.fail(path, "has " + std::to_string(values.size()) + " rows, expected 1");
-  return values.front();
-}
-
 template <class Struct>
 void read_scalars(const h5::File& file, const std::string& group, Struct& values) {
   scalars_of(static_cast<Struct*>(nullptr), [&](const char* name, double Struct::*member, const char*, const char*) {
     values.*member = read_one<double>(file, group + "/" + name);
   });
 }
+
+}  // namespace
 
 void write_criteria(h5::File& file, const Criteria& criteria) {
   for (const auto& [measure, name] : measure_names) {
@@ -301,6 +185,8 @@ Criteria read_criteria(const h5::File& file) {
   return criteria;
 }
 
+namespace {
+
 void write_tracks(h5::File& file, const std::vector<Track>& tracks) {
   write_table<JamEvent>(file, "/tracks", tracks, [](const Track& track) -> const JamEvent& { return track.event; });
   std::vector<ParticleId> particle;
@@ -323,22 +209,6 @@ std::vector<Track> read_tracks(const h5::File& file) {
     tracks[k].event.members = {particle[k]};
   }
   return tracks;
-}
-
-template <class Row>
-void write_with_members(h5::File& file, const std::string& group, const std::vector<Row>& rows) {
-  write_table(file, group, rows);
-  const auto members = write_parts(file, group, "member", group + "/members", rows,
-                                   [](const Row& row) -> const std::vector<ParticleId>& { return row.members; });
-  file.write(group + "/members", members, "1", "particle ids, ascending within each part");
-}
-
-template <class Row>
-std::vector<Row> read_with_members(const h5::File& file, const std::string& group) {
-  std::vector<Row> rows = read_table<Row>(file, group);
-  auto members = read_parts(file, group, "member", file.read<ParticleId>(group + "/members"), rows.size());
-  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].members = std::move(members[k]);
-  return rows;
 }
 
 // Those that this version knows, in its order.

@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/frames_in_flight.hpp"
 #include "apps/jamscope/outputs.hpp"
 #include "libjam/errors.hpp"
+#include "libjam/partial_file.hpp"
+#include "libjam/snapshot/schema.hpp"
 
 namespace jamscope {
 
@@ -47,48 +52,128 @@ std::string result_text(const jam::Analysis& a) {
   return text;
 }
 
+namespace {
+
+constexpr const char* partial_name = "partial.h5";
+
+struct FrameRange {
+  std::size_t first = 0, last = 0;  // [first, last)
+};
+
+FrameRange frame_range(const std::string& text, std::size_t frames) {
+  if (text.empty()) return {0, frames};
+  const auto refuse = [&](const std::string& expected) -> UsageError {
+    return UsageError(fmt::format("--frames {}: expected {}; there are {} frames", text, expected, frames));
+  };
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) throw refuse("A:B, from frame A to before frame B");
+  const auto number = [&](const std::string& part, std::size_t left_out) {
+    if (part.empty()) return left_out;
+    std::size_t value = 0;
+    const auto [end, problem] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (problem != std::errc() || end != part.data() + part.size()) throw refuse("two numbers of frames");
+    return value;
+  };
+  const FrameRange range{number(text.substr(0, colon), 0), std::min(number(text.substr(colon + 1), frames), frames)};
+  if (range.first >= range.last) throw refuse("the first below the second and below the number of frames");
+  return range;
+}
+
+// The rows of the series that came with frames [first, last).
+jam::Series series_of(const jam::SnapshotSource& source, FrameRange range) {
+  const auto rows_up_to = [&](std::size_t frames) {
+    if (frames == 0) return std::size_t{0};
+    if (frames == source.frames) return source.series.size();
+    const auto& steps = source.series.step;
+    return std::size_t(std::upper_bound(steps.begin(), steps.end(), source.read(frames - 1).step) - steps.begin());
+  };
+  if (source.series.size() == 0) return {};
+  return jam::schema::rows_of(source.series, rows_up_to(range.first), rows_up_to(range.last));
+}
+
+RunFacts facts_of(const jam::RunInfo& info, const std::vector<std::string>& command_line, const std::vector<std::string>& inputs) {
+  RunFacts facts = facts_of_this_process(command_line);
+  const CaseTitle title = case_title(info);
+  facts.name = title.name;
+  facts.description = title.description;
+  facts.inputs = inputs;
+  return facts;
+}
+
+std::string in_folder(const std::string& folder) { return (std::filesystem::path(folder) / partial_name).string(); }
+
+}  // namespace
+
 int analyze(const AnalyzeOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Console console(stderr, options.log_format, options.quiet);
   jam::SnapshotSource source = open_stored_run(options.input);
   const jam::Criteria criteria = stored_run_criteria(source.info, options.criteria, options.overrides);
   jam::Pipeline pipeline(source.info, criteria);
+  if (source.frames == 0)
+    throw jam::DataError(options.input.paths.front() + ": holds no frames, expected at least one");
+  const FrameRange range = frame_range(options.frames, source.frames);
   prepare_folder(options.output, options.overwrite);
 
   for (const std::string& warning : source.warnings) console.warning(warning);
-  if (source.frames == 0)
-    throw jam::DataError(options.input.paths.front() + ": holds no frames, expected at least one");
   catch_stop_signals();
   Progress progress;
   progress.stage = "analyze";
   progress.unit = "frames";
-  progress.total = static_cast<double>(source.frames);
+  progress.total = static_cast<double>(range.last - range.first);
+  jam::PartialAnalysis part{source.info, pipeline.criteria(), range.first, {}, series_of(source, range)};
   const auto examine = [&](std::size_t frame, const jam::Snapshot*, const jam::Snapshot& snapshot) {
     return pipeline.examine(snapshot, frame);
   };
-  for_frames_in_flight(source, 0, source.frames, options.threads, false, examine, [&](jam::ExaminedFrame frame) {
+  std::size_t events = 0;
+  bool jammed_before = false;
+  for_frames_in_flight(source, range.first, range.last, options.threads, false, examine, [&](jam::ExaminedFrame frame) {
     if (stop_requested()) throw UsageError("interrupted: nothing was written");
-    const jam::FrameSummary& summary = pipeline.add(std::move(frame));
-    progress.done = static_cast<double>(pipeline.frames());
+    const jam::FrameSummary& summary = frame.summary;
+    progress.done = static_cast<double>(part.frames.size() + 1);
     progress.contacts = summary.particle_contacts + summary.wall_contacts;
     progress.largest_force = summary.largest_compressive_force;
     progress.jammed = summary.jammed;
-    progress.events = pipeline.events_so_far();
+    events += summary.jammed > 0 && !jammed_before;
+    jammed_before = summary.jammed > 0;
+    progress.events = events;
     console.progress(progress);
+    part.frames.push_back(std::move(frame));
   });
   console.finished(progress);
 
-  const jam::Analysis analysis = pipeline.finish(source.series);
-  RunFacts facts = facts_of_this_process(options.command_line);
-  const CaseTitle title = case_title(source.info);
-  facts.name = title.name;
-  facts.description = title.description;
-  facts.inputs = options.input.paths;
+  if (options.partial) {
+    jam::write_partial(in_folder(options.output), part);
+    if (!options.quiet) fmt::print("frames {} to {} in {}\n", range.first, range.last - 1, in_folder(options.output));
+    return 0;
+  }
+  const jam::Analysis analysis = jam::finish(part);
+  RunFacts facts = facts_of(source.info, options.command_line, options.input.paths);
   facts.warnings = source.warnings;
   facts.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  write_outputs(options.output, source.info, analysis, source.series, facts);
-  if (!options.quiet) fmt::print("{}{}results in {}\n", result_text(analysis), energy_text(source.info, source.series),
-                                 options.output);
+  write_outputs(options.output, source.info, analysis, part.series, facts);
+  if (!options.quiet) fmt::print("{}{}results in {}\n", result_text(analysis), energy_text(source.info, part.series), options.output);
+  return 0;
+}
+
+int merge(const MergeOptions& options) {
+  std::vector<jam::PartialAnalysis> parts;
+  std::vector<std::string> names;
+  for (const std::string& path : options.parts) {
+    names.push_back(std::filesystem::is_directory(path) ? in_folder(path) : path);
+    parts.push_back(jam::read_partial(names.back()));
+  }
+  const jam::PartialAnalysis whole = jam::joined(std::move(parts), names);
+  prepare_folder(options.output, options.overwrite);
+  const std::size_t last = whole.first_frame + whole.frames.size() - 1;
+  if (options.partial) {
+    jam::write_partial(in_folder(options.output), whole);
+    if (!options.quiet) fmt::print("frames {} to {} in {}\n", whole.first_frame, last, in_folder(options.output));
+    return 0;
+  }
+  const jam::Analysis analysis = jam::finish(whole);
+  write_outputs(options.output, whole.run, analysis, whole.series, facts_of(whole.run, options.command_line, names));
+  if (!options.quiet) fmt::print("{}{}results in {}\n", result_text(analysis), energy_text(whole.run, whole.series), options.output);
   return 0;
 }
 

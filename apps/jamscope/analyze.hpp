@@ -14,6 +14,8 @@ struct AnalyzeOptions {
   std::string output;                  // folder
   std::string criteria;                // criteria file, or empty
   std::vector<std::string> overrides;  // of criteria, "key=value"
+  std::string frames;                  // "A:B": from frame A to before frame B, either may be left out; empty: all
+  bool partial = false;                // write partial.h5 for `merge` and nothing else
   bool overwrite = false;
   int threads = 1;                     // frames at a time
   bool quiet = false;
@@ -24,6 +26,18 @@ struct AnalyzeOptions {
 // Writes the result files into options.output and prints what was found. Returns the exit code; throws like the
 // libraries, and UsageError.
 int analyze(const AnalyzeOptions& options);
+
+struct MergeOptions {
+  std::vector<std::string> parts;  // partial.h5 of `analyze --partial`, or folders that hold one
+  std::string output;              // folder
+  bool partial = false;            // write the parts as one part
+  bool overwrite = false;
+  bool quiet = false;
+  std::vector<std::string> command_line;
+};
+
+// Puts parts of one run together and writes the result files as analyze() would have for all their frames at once.
+int merge(const MergeOptions& options);
 
 // The few lines with which analyze and simulate end.
 std::string result_text(const jam::Analysis& analysis);

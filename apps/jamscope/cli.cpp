@@ -43,6 +43,7 @@ struct Options {
   InspectOptions inspect;
   MetricsOptions metrics;
   CompareOptions compare;
+  MergeOptions merge;
   BenchOptions bench;
 };
 
@@ -159,6 +160,8 @@ Command add_analyze(CLI::App& app, Options& o) {
   c.add_option("--criteria", a.criteria, "TOML file with an [analysis] table; default: that of the run's own case")
       ->type_name("FILE");
   add_overrides(c, a.overrides, "--set analysis.jam_force=\"5 N\"");
+  c.add_option("--frames", a.frames, "from frame A to before frame B, counted from 0; default: all")->type_name("A:B");
+  c.add_flag("--partial", a.partial, "write partial.h5 for `jamscope merge` instead of results");
   c.add_flag("--overwrite", a.overwrite, "replace the results of an earlier analysis in DIR");
   a.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   add_threads(c, a.threads, "number of threads; the results do not depend on it");
@@ -169,6 +172,22 @@ Command add_analyze(CLI::App& app, Options& o) {
   return [&o] {
     o.analyze.command_line = o.command_line;
     return analyze(o.analyze);
+  };
+}
+
+Command add_merge(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("merge", "put parts of an analysis together");
+  MergeOptions& m = o.merge;
+  c.add_option("PART", m.parts, "partial.h5 of `analyze --partial`, or folders that hold one, in any order")->required()->type_name("");
+  c.add_option("-o,--output", m.output, "folder for the results")->required()->type_name("DIR");
+  c.add_flag("--partial", m.partial, "write the parts as one part");
+  c.add_flag("--overwrite", m.overwrite, "replace earlier results in DIR");
+  c.add_flag("-q,--quiet", m.quiet, "no output");
+  c.footer("Example, on two machines:\n  jamscope analyze run.h5 --frames 0:500 --partial -o a\n"
+           "  jamscope analyze run.h5 --frames 500: --partial -o b\n  jamscope merge a b -o jams");
+  return [&o] {
+    o.merge.command_line = o.command_line;
+    return merge(o.merge);
   };
 }
 
@@ -252,7 +271,7 @@ using AddCommand = Command (*)(CLI::App&, Options&);
 constexpr AddCommand commands[] = {
     add_check,
     add_simulate,
-    add_analyze,  add_inspect, add_metrics, add_compare, add_bench,
+    add_analyze,  add_merge, add_inspect, add_metrics, add_compare, add_bench,
 };
 
 int fail(int code, const std::string& message) {

@@ -223,11 +223,17 @@ void keep_metadata_within_pages(hid_t plan) {
   H5Pset_file_space_page_size(plan, page_bytes);
 }
 
-Handle parents_made() {
+Handle utf8_links() {
   Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links.get(), 1);
   H5Pset_char_encoding(links.get(), H5T_CSET_UTF8);
   return links;
+}
+
+// How to make an object: without the times of its making, so that the same contents are the same bytes.
+Handle timeless(hid_t kind) {
+  Handle plan(H5Pcreate(kind), H5Pclose);
+  H5Pset_obj_track_times(plan.get(), false);
+  return plan;
 }
 
 Handle open_dataset(hid_t file, const std::string& name) {
@@ -298,9 +304,10 @@ File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) 
   [[maybe_unused]] static const herr_t no_cleanup_at_exit = H5dont_atexit();
   const Quiet quiet;
   const Handle access = file_access(), plan(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-  keep_metadata_within_pages(plan.get());
+  if (mode == Mode::create_growing) keep_metadata_within_pages(plan.get());
+  H5Pset_obj_track_times(plan.get(), false);
   std::string verb = "open for reading";
-  if (mode != Mode::create) {
+  if (mode != Mode::create && mode != Mode::create_growing) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw DataError(path_ + ": no such file");
     if (!std::filesystem::is_regular_file(path, error)) throw DataError(path_ + ": is not a file");
@@ -308,6 +315,7 @@ File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) 
   }
   switch (mode) {
     case Mode::create:
+    case Mode::create_growing:
       verb = "create";
       id_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, plan.get(), access.get());
       break;
@@ -342,8 +350,8 @@ File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) 
   if (id_ < 0) throw DataError(path_ + ": " + with_reason("cannot " + verb));
 }
 
-File File::create(const std::filesystem::path& path) {
-  return {path, Mode::create};
+File File::create(const std::filesystem::path& path, Grows grows) {
+  return {path, grows == Grows::yes ? Mode::create_growing : Mode::create};
 }
 File File::open(const std::filesystem::path& path) {
   return {path, Mode::read};
@@ -453,14 +461,22 @@ std::uint64_t File::largest_bytes(const std::string& name) const {
   return (chunk_rows(name) > 0 ? stored * largest_deflate_ratio : stored) + small_array_bytes;
 }
 
+// Not by HDF5, which would note when it made them.
+void File::make_parents(const std::string& name) {
+  const std::size_t slash = name.rfind('/');
+  if (slash != std::string::npos && slash > 0) make_group(name.substr(0, slash));
+}
+
 void File::make_group(const std::string& name) {
   const Quiet quiet;
   if (exists(name)) {
     if (!is_group(name)) fail(name, "is an array, expected a group");
     return;
   }
-  const Handle links = parents_made();
-  const Handle group(H5Gcreate2(id_, name.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  make_parents(name);
+  const Handle links = utf8_links();
+  const Handle plan = timeless(H5P_GROUP_CREATE);
+  const Handle group(H5Gcreate2(id_, name.c_str(), links.get(), plan.get(), H5P_DEFAULT), H5Gclose);
   if (!group.ok()) fail(name, with_reason("cannot make the group"));
 }
 
@@ -470,7 +486,7 @@ void File::write_array(const std::string& name, Type type, const std::vector<std
     const Quiet quiet;
     const std::vector<hsize_t> dims(shape.begin(), shape.end());
     const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
-    const Handle plan(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const Handle plan = timeless(H5P_DATASET_CREATE);
     const std::uint64_t cells = shape[0] * (shape.size() > 1 ? shape[1] : 1);
     if (cells > 0) {
       std::vector<hsize_t> chunk = dims;
@@ -481,7 +497,8 @@ void File::write_array(const std::string& name, Type type, const std::vector<std
       H5Pset_shuffle(plan.get());
       H5Pset_deflate(plan.get(), 1);
     }
-    const Handle links = parents_made();
+    make_parents(name);
+    const Handle links = utf8_links();
     const Handle dataset(
         H5Dcreate2(id_, name.c_str(), file_type(type), space.get(), links.get(), plan.get(), H5P_DEFAULT), H5Dclose);
     if (!dataset.ok()) fail(name, with_reason("cannot make the array"));
@@ -498,9 +515,10 @@ void File::write_text(const std::string& name, const std::string& text, const st
     const Quiet quiet;
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Handle type = text_type(text.size());
-    const Handle links = parents_made();
-    const Handle dataset(H5Dcreate2(id_, name.c_str(), type.get(), space.get(), links.get(), H5P_DEFAULT, H5P_DEFAULT),
-                         H5Dclose);
+    make_parents(name);
+    const Handle links = utf8_links();
+    const Handle plan = timeless(H5P_DATASET_CREATE);
+    const Handle dataset(H5Dcreate2(id_, name.c_str(), type.get(), space.get(), links.get(), plan.get(), H5P_DEFAULT), H5Dclose);
     if (!dataset.ok()) fail(name, with_reason("cannot make the text"));
     if (H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) < 0) {
       fail(name, with_reason("cannot write"));
@@ -520,9 +538,10 @@ void File::write_texts(const std::string& name, const std::vector<std::string>& 
     const hsize_t rows = texts.size();
     const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose);
     const Handle type = text_type(length);
-    const Handle links = parents_made();
-    const Handle dataset(H5Dcreate2(id_, name.c_str(), type.get(), space.get(), links.get(), H5P_DEFAULT, H5P_DEFAULT),
-                         H5Dclose);
+    make_parents(name);
+    const Handle links = utf8_links();
+    const Handle plan = timeless(H5P_DATASET_CREATE);
+    const Handle dataset(H5Dcreate2(id_, name.c_str(), type.get(), space.get(), links.get(), plan.get(), H5P_DEFAULT), H5Dclose);
     if (!dataset.ok()) fail(name, with_reason("cannot make the array"));
     if (rows > 0 && H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()) < 0) {
       fail(name, with_reason("cannot write"));
@@ -634,13 +653,14 @@ void File::make_column(const std::string& name, Type type, unsigned width, std::
     const std::array<hsize_t, 2> none{0, width}, any{H5S_UNLIMITED, width};
     const std::array<hsize_t, 2> chunk{std::max<std::uint64_t>(chunk_rows, 1), width};
     const Handle space(H5Screate_simple(rank, none.data(), any.data()), H5Sclose);
-    const Handle plan(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const Handle plan = timeless(H5P_DATASET_CREATE);
     H5Pset_chunk(plan.get(), rank, chunk.data());
     if (compressed) {
       H5Pset_shuffle(plan.get());
       H5Pset_deflate(plan.get(), 1);
     }
-    const Handle links = parents_made();
+    make_parents(name);
+    const Handle links = utf8_links();
     const Handle dataset(
         H5Dcreate2(id_, name.c_str(), file_type(type), space.get(), links.get(), plan.get(), H5P_DEFAULT), H5Dclose);
     if (!dataset.ok()) fail(name, with_reason("cannot make the column"));
@@ -775,11 +795,11 @@ std::filesystem::path aside_of(const std::filesystem::path& path) {
   return aside;
 }
 
-void write_aside(const std::filesystem::path& path, const std::function<void(File&)>& fill) {
+void write_aside(const std::filesystem::path& path, const std::function<void(File&)>& fill, Grows grows) {
   const std::filesystem::path aside = aside_of(path);
   std::error_code error;
   try {
-    File file = File::create(aside);
+    File file = File::create(aside, grows);
     fill(file);
     file.close();
   } catch (...) {

@@ -68,10 +68,14 @@ struct Layout {
   std::uint64_t width() const { return shape.size() < 2 ? 1 : shape[1]; }
 };
 
+// A file that gets rows later is laid out so that a kill then leaves it readable; HDF5 notes the time of its making in it. One that is written
+// at once is the same bytes for the same contents.
+enum class Grows : std::uint8_t { no, yes };
+
 class File {
  public:
   // A new, empty file in place of whatever is there.
-  static File create(const std::filesystem::path& path);
+  static File create(const std::filesystem::path& path, Grows grows = Grows::no);
   // Read only. Also opens files that another process is appending to, or that a killed one left unclosed.
   static File open(const std::filesystem::path& path);
   // Appends rows to existing columns so that readers see a consistent file at any moment (HDF5's SWMR mode). Nothing
@@ -181,7 +185,7 @@ class File {
   [[noreturn]] void fail(const std::string& place, const std::string& problem) const;
 
  private:
-  enum class Mode : std::uint8_t { create, read, append, update };
+  enum class Mode : std::uint8_t { create, create_growing, read, append, update };
   File(const std::filesystem::path& path, Mode mode);
 
   template <class T>
@@ -193,6 +197,7 @@ class File {
       return {rows, Row<T>::width};
     }
   }
+  void make_parents(const std::string& name);
   void write_array(const std::string& name, Type type, const std::vector<std::uint64_t>& shape, const void* data,
                    const std::string& unit, const std::string& doc);
   // Throws unless rows [start, start + count) of this type and width exist and the file is large enough to hold them.
@@ -214,7 +219,7 @@ class File {
 
 // Writes a whole file under a name beside `path` and renames it when it is complete, so that `path` holds either the
 // old file or the new one.
-void write_aside(const std::filesystem::path& path, const std::function<void(File&)>& fill);
+void write_aside(const std::filesystem::path& path, const std::function<void(File&)>& fill, Grows grows = Grows::no);
 
 // The name beside `path` under which a file is prepared.
 std::filesystem::path aside_of(const std::filesystem::path& path);

@@ -45,7 +45,7 @@ void write_empty_file(const std::filesystem::path& path, const RunInfo& info) {
         for (const Wall& wall : info.walls) make_column(file, path_of(item, wall.name), item, table_chunk, false);
       }
     }
-  });
+  }, h5::Grows::yes);
 }
 
 }  // namespace
