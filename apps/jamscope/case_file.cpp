@@ -206,6 +206,10 @@ void read_output(Section output, dem::Output& o) {
   output.quantity("series_interval", dimension::time, o.series_interval);
   output.quantity("checkpoint_interval", dimension::time, o.checkpoint_interval);
   output.truth("energy_ledger", o.energy_ledger, optional);
+  output.quantity("capture_interval", dimension::time, o.capture.interval, optional);
+  output.quantity("capture_before", dimension::time, o.capture.before, optional);
+  output.quantity("capture_after", dimension::time, o.capture.after, optional);
+  if (double gigabytes = 0; output.number("capture_gigabytes", gigabytes, optional)) o.capture.most_bytes = 1e9 * gigabytes;
   output.finish();
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "apps/jamscope/analyze.hpp"
+#include "apps/jamscope/capture.hpp"
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/checkpoint.hpp"
 #include "apps/jamscope/errors.hpp"
@@ -52,6 +53,7 @@ class Run {
     dem::SettledBed bed = settled_bed(file_, scene_, options_.bed_cache, console_);
     writer_.emplace(jam::SnapshotWriter::create(snapshots(), info_));
     simulation_.emplace(scene_.setup, std::move(bed.state));
+    begin_capture(std::nullopt);
     record_frame();
     save();
   }
@@ -63,6 +65,7 @@ class Run {
       throw UsageError(fmt::format("{}: belongs to another case, expected case_sha256 {}, got {}", restart(), sha_,
                                    checkpoint.case_sha256));
     writer_.emplace(jam::SnapshotWriter::resume(snapshots(), checkpoint.state.step));
+    begin_capture(checkpoint.state.step);
     info_ = writer_->info();
     const jam::SnapshotSource stored = jam::open_jamscope_file(snapshots());
     for (std::size_t k = 0; k < stored.frames; ++k) pipeline_.add(stored.read(k));
@@ -83,6 +86,7 @@ class Run {
     const std::uint64_t frame = steps_in(c.output.frame_interval, c.step);
     const std::uint64_t window = std::min(steps_in(c.output.series_interval, c.step), frame);
     const std::uint64_t checkpoint = steps_in(c.output.checkpoint_interval, c.step);
+    const std::uint64_t fine = capture_ ? steps_in(c.output.capture.interval, c.step) : last;
     first_step_ = simulation_->step();
     begin_ = Clock::now();
     std::uint64_t next_checkpoint = (simulation_->step() / checkpoint + 1) * checkpoint;
@@ -92,9 +96,12 @@ class Run {
         return false;
       }
       const std::uint64_t step = simulation_->step();
-      const std::uint64_t target = std::min({(step / window + 1) * window, (step / frame + 1) * frame, last});
+      const std::uint64_t target = std::min({(step / window + 1) * window, (step / frame + 1) * frame, (step / fine + 1) * fine, last});
       simulation_->advance(target - step);
+      if (capture_ && target % fine == 0) offer_to_capture(target - std::min(target, fine));
+      if (target % window != 0 && target % frame != 0 && target != last) continue;
       const dem::Window row = simulation_->take_window();
+      for (const dem::Excursion& e : row.excursions) ended_since_ = std::max(ended_since_, e.last_step);
       append(pending_, row);
       append(series_, row);
       largest_overlap_ = row.largest_overlap;
@@ -108,6 +115,9 @@ class Run {
       if (console_.due()) console_.progress(progress(end));
     }
     console_.finished(progress(end));
+    if (capture_ && capture_->windows() > 0) console_.note(fmt::format("{} windows around jams in {}", capture_->windows(), capture_->path().string()));
+    if (capture_ && capture_->windows_left_out() > 0)
+      console_.warning(fmt::format("{} jams after {} had reached output.capture_gigabytes are not in it", capture_->windows_left_out(), capture_->path().string()));
     save();
     return true;
   }
@@ -158,6 +168,18 @@ class Run {
     pipeline_.add(frame);
   }
 
+  void begin_capture(std::optional<std::uint64_t> last_step) {
+    if (file_.physics.output.capture.interval > 0) capture_.emplace(folder_ / "capture.h5", info_, file_.physics.output.capture, last_step);
+  }
+
+  // Was a grain jammed at some step after `before`?
+  void offer_to_capture(std::uint64_t before) {
+    const auto& ended = simulation_->ended_excursions();
+    const bool jammed = !simulation_->excursions().empty() || ended_since_ > before ||
+                        std::any_of(ended.begin(), ended.end(), [before](const dem::Excursion& e) { return e.last_step > before; });
+    capture_->offer(snapshot(simulation_->view()), jammed);
+  }
+
   void save() { write_checkpoint(restart(), {simulation_->state(), pending_, sha_}); }
 
   double speed() const {
@@ -192,6 +214,8 @@ class Run {
   jam::Pipeline pipeline_;
   std::optional<jam::SnapshotWriter> writer_;
   std::optional<dem::Simulation> simulation_;
+  std::optional<Capture> capture_;
+  std::uint64_t ended_since_ = 0;  // last step of the excursion that ended last
   jam::Series series_, pending_;  // of the whole run; since the last frame
   double largest_overlap_ = 0, largest_force_ = 0;
   std::uint32_t jammed_ = 0;

@@ -13,7 +13,7 @@ namespace {
 double common_interval(const Case& c) {
   constexpr double unit = 1e-12;
   std::int64_t common = 0;
-  for (const double interval : {c.duration, c.output.frame_interval, c.output.series_interval, c.output.checkpoint_interval})
+  for (const double interval : {c.duration, c.output.frame_interval, c.output.series_interval, c.output.checkpoint_interval, c.output.capture.interval})
     common = std::gcd(common, std::llround(std::min(interval / unit, 9e18)));
   return double(common) * unit;
 }

@@ -104,11 +104,19 @@ struct Motion {
   bool clockwise = false;
 };
 
+// Fine frames around jams.
+struct Capture {
+  double interval = 0;                  // s, between frames; 0: none
+  double before = 5e-4, after = 5e-4;   // s, of a jam
+  double most_bytes = 2e9;              // of the file
+};
+
 struct Output {
   double frame_interval = 0;       // s
   double series_interval = 0;      // s
   double checkpoint_interval = 0;  // s of simulated time
   bool energy_ledger = false;      // book where the energy goes
+  Capture capture;
 };
 
 // Of the levels at which contacts step (libdem/contact/levels.hpp).

@@ -276,6 +276,10 @@ std::vector<CaseProblem> case_problems(const Case& c, double tip) {
   const bool grains = bed && std::none_of(check.problems.begin(), check.problems.end(), [](const CaseProblem& p) {
                         return p.fatal && p.key.starts_with("material.");
                       });
+  const Capture& capture = c.output.capture;
+  if (!(capture.before >= 0)) check.refuse("output.capture_before", "must not be negative, got " + text(capture.before) + " s");
+  if (!(capture.after >= 0)) check.refuse("output.capture_after", "must not be negative, got " + text(capture.after) + " s");
+  check.positive("output.capture_gigabytes", capture.most_bytes / 1e9, " GB");
   if (grains && rheometer && duration && tip > 0) check_fit(c, tip, check);
   if (grains && step) check_step(c, check);
   if (duration && step) {
@@ -283,6 +287,7 @@ std::vector<CaseProblem> case_problems(const Case& c, double tip) {
     check_interval("output.frame_interval", c.output.frame_interval, c, check);
     check_interval("output.series_interval", c.output.series_interval, c, check);
     check_interval("output.checkpoint_interval", c.output.checkpoint_interval, c, check);
+    if (c.output.capture.interval != 0) check_interval("output.capture_interval", c.output.capture.interval, c, check);
   }
   return check.problems;
 }

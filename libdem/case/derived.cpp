@@ -117,7 +117,7 @@ Derived derive(const Case& c, double tip) {
   d.checkpoints = std::floor(c.duration / c.output.checkpoint_interval * (1 + 1e-12));
   d.particle_steps = d.grains * d.steps;
   // Bytes of one row of each table of the snapshot schema. Wall contacts: one grain in 1.3 diameters squared of wall.
-  constexpr double particle_row = 49, particle_contact_row = 41, wall_contact_row = 67, series_row = 700;
+  constexpr double particle_row = 49, particle_contact_row = 41, wall_contact_row = 67, series_row = 960;
   // Of a round bed of that cross-section.
   const double diameter = std::sqrt(4 / pi * cross_section(bed_region(c)));
   const double wall_contacts = pi * diameter * (c.bed.depth + diameter / 4) / (1.3 * mean * mean);

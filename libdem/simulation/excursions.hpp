@@ -35,6 +35,7 @@ class ExcursionTracker {
   void look(std::uint64_t step, double duration, const std::vector<WatchedGrain>& above);
 
   const std::vector<Excursion>& open() const { return open_; }  // ascending by id
+  const std::vector<Excursion>& ended() const { return ended_; }  // since take_ended()
   // Those that have ended since the last call, by the step after their last, then by id.
   std::vector<Excursion> take_ended();
 

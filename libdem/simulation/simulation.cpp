@@ -642,6 +642,7 @@ std::uint64_t Simulation::step() const { return engine_->step; }
 double Simulation::time() const { return engine_->time(); }
 const Setup& Simulation::setup() const { return engine_->setup; }
 const Particles& Simulation::particles() const { return engine_->grains.caller; }
+const std::vector<Excursion>& Simulation::ended_excursions() const { return engine_->excursions.ended(); }
 const std::vector<Excursion>& Simulation::excursions() const { return engine_->excursions.open(); }
 double Simulation::kinetic_energy() const { return engine_->kinetic_energy(); }
 Ledger Simulation::ledger() const { return engine_->ledger(); }

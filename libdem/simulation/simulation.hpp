@@ -211,6 +211,7 @@ class Simulation {
   std::size_t contacts() const;  // acting now, walls included
   double kinetic_energy() const;  // J, translation and rotation
   const std::vector<Excursion>& excursions() const;  // that have not ended, ascending by id
+  const std::vector<Excursion>& ended_excursions() const;  // since the last window was taken
   Ledger ledger() const;          // of a run that keeps one; else all zero
   // s, the smallest local limit of the step, 2/omega of a grain between its contacts as they are now (guards.hpp); infinity
   // where nothing touches. Costs a pass over the contacts.

@@ -23,7 +23,7 @@ inline Case ft4(char test) {
   c.motion = {0.25, -5 * std::acos(-1.0) / 180, false};
   c.duration = 2;
   c.step = 5e-8;
-  c.output = {2e-3, 1e-4, 20e-3};
+  c.output = {2e-3, 1e-4, 20e-3, false, {}};
   return c;
 }
 
