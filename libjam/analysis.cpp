@@ -107,10 +107,25 @@ BladePose blade_of(const Snapshot& snapshot, const std::vector<Wall>& walls) {
   return {};
 }
 
+// The site of each cluster: of its member that carries the most.
+std::vector<std::uint32_t> cluster_sites(const std::vector<Cluster>& clusters, const std::vector<JamFrame>& frames, const std::vector<BladePose>& blade,
+                                         const Sites& sites) {
+  std::vector<std::uint32_t> site;
+  for (const Cluster& cluster : clusters) {
+    const JammedSample* largest = nullptr;
+    for (const JammedSample& sample : frames[cluster.frame].jammed)
+      if (std::binary_search(cluster.members.begin(), cluster.members.end(), sample.particle) &&
+          (largest == nullptr || sample.compressive_force > largest->compressive_force))
+        largest = &sample;
+    site.push_back(largest == nullptr ? 0 : sites.of(in_blade_frame(blade, frames[cluster.frame].time, largest->position.cast<double>())));
+  }
+  return site;
+}
+
 }  // namespace
 
 std::string events_csv(const Analysis& analysis) {
-  return events_csv(analysis.events, analysis.tracks);
+  return events_csv(analysis.events, analysis.cluster_events, analysis.tracks);
 }
 
 std::string step_jams_csv(const Analysis& analysis) {
@@ -192,6 +207,9 @@ Analysis Pipeline::finish(const Series& series) const {
 
   a.events = global_events(jam_frames_, a.sampling_interval);
   a.tracks = particle_tracks(jam_frames_, a.sampling_interval);
+  a.lineage = lineage(a.clusters, cluster_sites(a.clusters, jam_frames_, blade_, {.z_low = info_.gap.z_low, .z_high = info_.gap.z_high}), jam_frames_,
+                      a.sampling_interval);
+  a.cluster_events = cluster_events(a.clusters, a.lineage, jam_frames_, a.sampling_interval);
   a.jammed_time = jammed_time(a.events);
   a.jam_frequency = a.observed_time > 0 ? static_cast<double>(a.events.size()) / a.observed_time : 0.0;
   a.corrected = corrected_for_sampling(a.events, a.sampling_interval, a.observed_time);

@@ -14,6 +14,7 @@
 #include "libjam/events/event.hpp"
 #include "libjam/events/every_step.hpp"
 #include "libjam/events/jam_frame.hpp"
+#include "libjam/events/lineage.hpp"
 #include "libjam/jamming/cluster.hpp"
 #include "libjam/jamming/criteria.hpp"
 #include "libjam/snapshot/snapshot.hpp"
@@ -53,7 +54,9 @@ struct Analysis {
   std::vector<FrameSummary> frames;
   std::vector<RecordedMetric> metrics;
   std::vector<Cluster> clusters;  // by frame, then largest first, ties by smallest id
+  Lineage lineage;                // of the clusters
   std::vector<JamEvent> events;   // the global stream
+  std::vector<JamEvent> cluster_events;  // the cluster stream: by identity
   std::vector<Track> tracks;      // by start, then particle id
   std::vector<SurvivalClass> survival_classes;
   std::vector<std::uint32_t> jammed_histogram;  // [n] = number of frames with n jammed particles (Fig. 12)

@@ -29,6 +29,13 @@ void columns_of(JamEvent*, Visit&& column) {
 }
 
 template <class Visit>
+void columns_of(ClusterLink*, Visit&& column) {
+  column("from", &ClusterLink::from, "1", "row of /clusters");
+  column("to", &ClusterLink::to, "1", "row of /clusters, in the next frame");
+  column("shared", &ClusterLink::shared, "1", "particles that both have; 0: a hand-over at the same site");
+}
+
+template <class Visit>
 void columns_of(Track::Point*, Visit&& column) {
   column("frame", &Track::Point::frame, "1", "row of /frames");
   column("position", &Track::Point::position, "m", "centre of the particle");
@@ -261,6 +268,14 @@ void expect_frames(const h5::File& file, const std::string& group, const JamEven
 void check_frame_rows(const h5::File& file, const Analysis& analysis) {
   const std::size_t frames = analysis.frames.size();
   for (const Cluster& cluster : analysis.clusters) expect_frame(file, "/clusters", cluster.frame, frames);
+  for (const JamEvent& event : analysis.cluster_events) expect_frames(file, "/cluster_events", event, frames);
+  const std::size_t clusters = analysis.clusters.size();
+  if (!analysis.lineage.identity.empty() && analysis.lineage.identity.size() != clusters)
+    file.fail("/clusters/identity", "has " + std::to_string(analysis.lineage.identity.size()) + " rows, expected " + std::to_string(clusters));
+  for (const std::uint32_t identity : analysis.lineage.identity)
+    if (identity >= analysis.cluster_events.size()) file.fail("/clusters/identity", "names row " + std::to_string(identity) + ", expected one below " + std::to_string(analysis.cluster_events.size()));
+  for (const ClusterLink& link : analysis.lineage.links)
+    if (link.from >= clusters || link.to >= clusters) file.fail("/cluster_links", "names a row of /clusters that is not there, expected rows below " + std::to_string(clusters));
   for (const JamEvent& event : analysis.events) expect_frames(file, "/events", event, frames);
   for (const Track& track : analysis.tracks) {
     expect_frames(file, "/tracks", track.event, frames);
@@ -286,6 +301,9 @@ void write_results(const std::filesystem::path& path, const Analysis& analysis, 
     file.make_group("/metrics");
     for (const RecordedMetric& metric : analysis.metrics) file.write("/metrics/" + metric.name, metric.values, metric.unit, metric.doc);
     write_with_members(file, "/clusters", analysis.clusters);
+    file.write("/clusters/identity", analysis.lineage.identity, "1", "row of /cluster_events: clusters of one identity are one through time");
+    write_table(file, "/cluster_links", analysis.lineage.links);
+    write_with_members(file, "/cluster_events", analysis.cluster_events);
     write_with_members(file, "/events", analysis.events);
     write_tracks(file, analysis.tracks);
     write_table(file, "/survival_classes", analysis.survival_classes);
@@ -316,6 +334,10 @@ Analysis read_results(const std::filesystem::path& path) {
   analysis.criteria.metrics.emplace();
   for (const RecordedMetric& metric : analysis.metrics) analysis.criteria.metrics->push_back(metric.name);
   analysis.clusters = read_with_members<Cluster>(file, "/clusters");
+  if (file.exists("/cluster_links")) {
+    analysis.lineage = {file.read<std::uint32_t>("/clusters/identity"), read_table<ClusterLink>(file, "/cluster_links")};
+    analysis.cluster_events = read_with_members<JamEvent>(file, "/cluster_events");
+  }
   analysis.events = read_with_members<JamEvent>(file, "/events");
   analysis.tracks = read_tracks(file);
   analysis.survival_classes = read_table<SurvivalClass>(file, "/survival_classes");

@@ -38,11 +38,12 @@ void append_row(std::string& csv, std::string_view stream, const JamEvent& e) {
 
 }  // namespace
 
-std::string events_csv(std::span<const JamEvent> events, std::span<const Track> tracks) {
+std::string events_csv(std::span<const JamEvent> events, std::span<const JamEvent> clusters, std::span<const Track> tracks) {
   std::string csv =
       "stream,start_s,end_s,samples,survival_time_s,shortest_s,longest_s,open_at_start,open_at_end,peak_force_N,"
       "peak_time_s,peak_particle,peak_in_gap,bridged,members\n";
   for (const JamEvent& event : events) append_row(csv, "global", event);
+  for (const JamEvent& event : clusters) append_row(csv, "cluster", event);
   for (const Track& track : tracks) append_row(csv, "particle", track.event);
   return csv;
 }

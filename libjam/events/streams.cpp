@@ -28,7 +28,9 @@ void extend(JamEvent& event, std::span<const JamFrame> frames, std::uint32_t k, 
   }
 }
 
-void close(JamEvent& event, std::span<const JamFrame> frames, double interval) {
+}  // namespace
+
+void close_event(JamEvent& event, std::span<const JamFrame> frames, double interval) {
   const std::size_t next = std::size_t{event.last_frame} + 1;
   event.open_at_end = next == frames.size() || gap_before(frames, next, interval);
   event.samples = event.last_frame - event.first_frame + 1;
@@ -37,8 +39,6 @@ void close(JamEvent& event, std::span<const JamFrame> frames, double interval) {
   event.longest = event.open_at_start || event.open_at_end ? std::numeric_limits<double>::infinity()
                                                            : (event.samples + 1) * interval;
 }
-
-}  // namespace
 
 std::vector<JamEvent> global_events(std::span<const JamFrame> frames, double interval) {
   std::vector<JamEvent> events;
@@ -54,7 +54,7 @@ std::vector<JamEvent> global_events(std::span<const JamFrame> frames, double int
     open = jammed;
   }
   for (JamEvent& event : events) {
-    close(event, frames, interval);
+    close_event(event, frames, interval);
     std::sort(event.members.begin(), event.members.end());
     event.members.erase(std::unique(event.members.begin(), event.members.end()), event.members.end());
   }
@@ -87,7 +87,7 @@ std::vector<Track> particle_tracks(std::span<const JamFrame> frames, double inte
     }
     std::swap(open, still_open);
   }
-  for (Track& track : tracks) close(track.event, frames, interval);
+  for (Track& track : tracks) close_event(track.event, frames, interval);
   return tracks;
 }
 

@@ -16,4 +16,7 @@ std::vector<JamEvent> global_events(std::span<const JamFrame> frames, double int
 // The same for each particle by itself, by first frame, then particle id.
 std::vector<Track> particle_tracks(std::span<const JamFrame> frames, double interval);
 
+// What follows from an event's first and last frame: its samples, its bracket, whether the record cuts it off at its end.
+void close_event(JamEvent& event, std::span<const JamFrame> frames, double interval);
+
 }  // namespace jam

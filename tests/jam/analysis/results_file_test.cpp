@@ -162,6 +162,14 @@ void expect_same(const Analysis& a, const Analysis& b) {
   EXPECT_EQ(a.flow_energy.power, b.flow_energy.power);
   EXPECT_EQ(a.flow_energy.energy, b.flow_energy.energy);
   EXPECT_EQ(a.flow_energy.total, b.flow_energy.total);
+  EXPECT_EQ(events_csv(a), events_csv(b));
+  EXPECT_EQ(a.lineage.identity, b.lineage.identity);
+  ASSERT_EQ(a.lineage.links.size(), b.lineage.links.size());
+  for (std::size_t k = 0; k < a.lineage.links.size(); ++k) {
+    EXPECT_EQ(a.lineage.links[k].from, b.lineage.links[k].from);
+    EXPECT_EQ(a.lineage.links[k].to, b.lineage.links[k].to);
+    EXPECT_EQ(a.lineage.links[k].shared, b.lineage.links[k].shared);
+  }
   ASSERT_EQ(a.every_step.size(), b.every_step.size());
   EXPECT_EQ(step_jams_csv(a), step_jams_csv(b));
   EXPECT_EQ(a.criteria.end_force, b.criteria.end_force);
@@ -185,6 +193,7 @@ TEST_F(ResultsFileTest, GivesBackTheSameAnalysisBitByBit) {
   ASSERT_GT(analysis.events.size(), 1u);
   ASSERT_GT(analysis.tracks.size(), analysis.events.size());
   ASSERT_FALSE(analysis.notes.empty());
+  ASSERT_GT(analysis.lineage.links.size(), 5u);
   ASSERT_EQ(analysis.flow_energy.source, "frames");
   write_results(path_, analysis, hand_made_run());
   expect_same(analysis, read_results(path_));

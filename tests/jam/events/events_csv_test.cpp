@@ -19,7 +19,7 @@ TEST(EventsCsvTest, HasOneRowPerGlobalEventAndPerTrack) {
                         {12, "..8.4"}},
                        0.5);
   frames[2].jammed[1].in_gap = frames[2].jammed[1].bridged = true;
-  EXPECT_EQ(events_csv(global_events(frames, 0.5), particle_tracks(frames, 0.5)),
+  EXPECT_EQ(events_csv(global_events(frames, 0.5), {}, particle_tracks(frames, 0.5)),
             std::string(header) +
                 "global,0.5,1,2,1,0.5,1.5,0,0,80,1,12,1,1,3;12\n"
                 "global,2,2,1,0.5,0,inf,0,1,40,2,12,0,0,12\n"
@@ -32,13 +32,13 @@ TEST(EventsCsvTest, NumbersReadBackAsTheSameDouble) {
   JamEvent event;
   event.start = 0.1 + 0.2;
   event.peak_force = 1.0 / 3.0;
-  const std::string csv = events_csv(std::vector<JamEvent>{event}, {});
+  const std::string csv = events_csv(std::vector<JamEvent>{event}, {}, {});
   EXPECT_NE(csv.find("\nglobal,0.30000000000000004,"), std::string::npos);
   EXPECT_NE(csv.find(",0.3333333333333333,"), std::string::npos);
 }
 
 TEST(EventsCsvTest, IsOnlyAHeaderWithoutEvents) {
-  EXPECT_EQ(events_csv({}, {}), header);
+  EXPECT_EQ(events_csv({}, {}, {}), header);
 }
 
 }  // namespace
