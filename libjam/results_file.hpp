@@ -7,8 +7,12 @@
 //   /frames            one row per frame
 //   /metrics           a dataset for each metric recorded, one row per frame
 //   /clusters          one row per cluster; members are rows [member_start, + member_count) of /clusters/members
+//   /cluster_links     which cluster of a frame became which of the next; /clusters/identity is the row of
+//   /cluster_events    the cluster stream
 //   /events            the global stream; members as above
 //   /tracks            the per-particle stream; points are rows [point_start, + point_count) of /tracks/points/...
+//   /every_step/...    global, particle, site: jams as every step of the run saw them, where it watched
+//   /contact_life      how long contacts lasted, by octaves, where the run counted
 //   /survival_classes /jammed_histogram /flow_energy /notes
 //
 // Every dataset has the attributes `unit` and `doc`. Truth values are 0 and 1.

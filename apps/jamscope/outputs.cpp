@@ -21,6 +21,7 @@
 #include "jamscope/version.hpp"
 #include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
+#include "libjam/events/peaks.hpp"
 #include "libjam/jamming/jam_criteria.hpp"
 #include "libjam/results_file.hpp"
 #include "libjam/snapshot/schema.hpp"
@@ -91,6 +92,25 @@ Json energy_json(const jam::RunInfo& info, const jam::Series& series) {
   });
   energy["residual_over_work_put_in"] = series.energy.residual.back() / work_put_in(info, series);
   return energy;
+}
+
+// How many jams there are above any threshold: stretches of the series of largest forces, of windows of steps where the source has them, else of
+// frames. Thresholds: ten to a decade, up to the largest force.
+Json jams_above_json(const jam::Analysis& a, const jam::Series& series) {
+  const bool windows = jam::present(series.largest_compressive_force, series.size()) && series.size() > 0;
+  std::vector<double> force;
+  if (windows) {
+    force.assign(series.largest_compressive_force.begin(), series.largest_compressive_force.end());
+  } else {
+    for (const jam::FrameSummary& frame : a.frames) force.push_back(frame.largest_compressive_force);
+  }
+  const double most = force.empty() ? 0.0 : *std::max_element(force.begin(), force.end());
+  if (!(most > 0)) return Json::object();
+  constexpr int decades = 4, in_a_decade = 10;
+  std::vector<double> thresholds;
+  const double top = std::floor(in_a_decade * std::log10(most));
+  for (double k = top - decades * in_a_decade; k <= top; ++k) thresholds.push_back(std::pow(10, k / in_a_decade));
+  return {{"of", windows ? "windows of steps" : "frames"}, {"threshold_N", thresholds}, {"jams", jam::counts_above(jam::peaks(force), thresholds)}};
 }
 
 const char* word(jam::CompressiveMeasure measure) {
@@ -294,6 +314,7 @@ std::string energy_text(const jam::RunInfo& info, const jam::Series& series) {
 std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
                          const RunFacts& facts) {
   Json json{{"run", run_json(info, facts)}, {"analysis", analysis_json(analysis)}};
+  json["analysis"]["jams_above"] = jams_above_json(analysis, series);
   if (!series.energy.residual.empty()) json["energy"] = energy_json(info, series);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

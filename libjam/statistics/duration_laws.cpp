@@ -155,8 +155,12 @@ DurationFit fit_cut_off(std::span<const Lifetime> durations, double t0) {
     for (const double t : cut_off) sum += cut_off_log_share(t, t0, p);
     return std::isfinite(sum) ? sum : -std::numeric_limits<double>::max();
   };
-  return nested(std::pair(-2.0, 6.0), std::pair(std::log(1e-3), std::log(1e3)),
-                [&](double alpha, double log_tau) { return Parameters{alpha, e.largest * std::exp(log_tau)}; }, likelihood);
+  const DurationFit found = nested(std::pair(-2.0, 6.0), std::pair(std::log(1e-3), std::log(1e3)),
+                                   [&](double alpha, double log_tau) { return Parameters{alpha, e.largest * std::exp(log_tau)}; }, likelihood);
+  // The power law itself is one of these laws, with the cut-off at infinity.
+  const DurationFit pure = fit_power(durations, t0);
+  if (found.log_likelihood >= pure.log_likelihood) return found;
+  return {{pure.parameter[0], std::numeric_limits<double>::infinity()}, pure.log_likelihood};
 }
 
 constexpr DurationLaw table[] = {
