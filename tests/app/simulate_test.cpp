@@ -6,9 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include "libjam/snapshot/reader.hpp"
@@ -163,6 +165,54 @@ TEST_F(SimulateProgram, ResumesToTheSameNumbersAsAnUninterruptedRun) {
     EXPECT_EQ(a.pp.tangential_force, b.pp.tangential_force);
     EXPECT_EQ(a.walls[2].force, b.walls[2].force);
   }
+}
+
+// Jams of every step, with a threshold so low that many grains pass it: the same from the run, from its file, from its file in parts, and from a run
+// that was stopped in their midst; and the fine frames hold each of them whole.
+TEST_F(SimulateProgram, FollowsJamsFromStepToStepAndCapturesThem) {
+  const std::string options = "--set analysis.jam_force='1 N' --set output.capture_interval='0.02 ms' --set output.capture_before='0.1 ms' --set output.capture_after='0.1 ms' ";
+  ASSERT_EQ(run_program(command("whole", options)).code, 0);
+  const std::string jams = text_of(folder_ / "whole/jams.csv");
+  ASSERT_EQ(run_program(command("parts", options + "--until '0.73 ms'")).code, 0);
+  ASSERT_EQ(run_program(command("parts", options + "--resume", 2)).code, 0);
+  EXPECT_EQ(text_of(folder_ / "parts/jams.csv"), jams);
+
+  const std::string file = folder_ / "whole/run.h5";
+  ASSERT_EQ(run_program("analyze " + file + " -q -o " + (folder_ / "again")).code, 0);
+  EXPECT_EQ(text_of(folder_ / "again/jams.csv"), jams);
+  const char* const ranges[] = {"0:4", "4:15", "15:"};
+  for (const char* range : ranges)
+    ASSERT_EQ(run_program("analyze " + file + " -q --partial --frames " + range + " -o " + (folder_ / ("part" + std::string(range)))).code, 0);
+  const Outcome merged = run_program("merge -q " + (folder_ / "part15:") + " " + (folder_ / "part0:4") + " " + (folder_ / "part4:15") + " -o " + (folder_ / "merged"));
+  ASSERT_EQ(merged.code, 0) << merged.err;
+  for (const char* name : {"events.csv", "jams.csv", "jam.h5"})
+    EXPECT_TRUE(text_of(folder_ / ("merged/" + std::string(name))) == text_of(folder_ / ("again/" + std::string(name)))) << name;
+  EXPECT_EQ(summary(folder_ / "merged")["analysis"].dump(), summary(folder_ / "again")["analysis"].dump());
+  EXPECT_EQ(run_program("merge -q " + (folder_ / "part0:4") + " " + (folder_ / "part15:") + " -o " + (folder_ / "gap")).code, 3);
+  EXPECT_EQ(run_program("analyze " + file + " --frames 5:5 -o " + (folder_ / "none")).code, 2);
+
+  const jam::SnapshotSource capture = jam::open_jamscope_file(folder_ / "whole/capture.h5");
+  std::vector<double> time;
+  for (std::size_t k = 0; k < capture.frames; ++k) time.push_back(capture.read(k).time);
+  std::istringstream rows(jams);
+  std::string line;
+  std::getline(rows, line);
+  int whole = 0;
+  while (std::getline(rows, line)) {
+    std::istringstream cells(line);
+    std::string stream, start, end;
+    std::getline(cells, stream, ',');
+    std::getline(cells, start, ',');
+    std::getline(cells, end, ',');
+    const double from = std::stod(start), to = std::min(std::stod(end), 2e-3 - 0.02e-3);
+    const auto first = std::upper_bound(time.begin(), time.end(), std::max(from, 0.02e-3) + 1e-12);
+    ASSERT_NE(first, time.begin()) << line;  // a frame before it
+    const auto last = std::lower_bound(time.begin(), time.end(), to - 1e-12);
+    ASSERT_NE(last, time.end()) << line;  // and one after it
+    for (auto t = first; t <= last && t != time.end(); ++t) EXPECT_LT(*t - *(t - 1), 0.0201e-3) << line;
+    ++whole;
+  }
+  EXPECT_GT(whole, 5);
 }
 
 TEST_F(SimulateProgram, BenchSaysHowFastAndWhereTheTimeGoes) {
