@@ -110,7 +110,7 @@ constexpr Quantity quantities[] = {
     {"rate", "1/s", 1, [](const Run& r) { return r.rate; }},
     {"half end within", "ms", 1e3, [](const Run& r) { return jam::Rate{r.median.value, r.median.low, r.median.high}; }},
     {"longest", "ms", 1e3, [](const Run& r) { return alone(r.longest); }},
-    {"jammed", "% of the time", 1e2, [](const Run& r) { return alone(r.jammed_share); }},
+    {"jammed time over record", "%", 1e2, [](const Run& r) { return alone(r.jammed_share); }},
     {"largest force", "N", 1, [](const Run& r) { return alone(r.peaks.empty() ? nan : *std::max_element(r.peaks.begin(), r.peaks.end())); }},
     {"median of peak forces", "N", 1, [](const Run& r) { return alone(median_of(r.peaks)); }},
     {"work of walls on jammed grains", "mJ", 1e3, [](const Run& r) { return alone(r.work); }},

@@ -52,7 +52,7 @@ TEST(Compare, ShowsRunsSideBySideAndTestsThem) {
   EXPECT_DOUBLE_EQ(value(1, "rate", "low"), jam::poisson_rate(4, 2).low);
   EXPECT_DOUBLE_EQ(value(0, "half end within"), 7);
   EXPECT_DOUBLE_EQ(value(1, "longest"), 23);
-  EXPECT_DOUBLE_EQ(value(0, "jammed"), 100 * 91e-3 / 2);
+  EXPECT_DOUBLE_EQ(value(0, "jammed time over record"), 100 * 91e-3 / 2);
   EXPECT_DOUBLE_EQ(value(0, "work of walls on jammed grains"), 13);
   EXPECT_DOUBLE_EQ(value(0, "median of peak forces"), 26);
   // 13 against 4 of 17 coins.
