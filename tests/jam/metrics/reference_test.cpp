@@ -12,6 +12,7 @@
 #include "libjam/metrics/clustering_metrics.hpp"
 #include "libjam/metrics/community_metrics.hpp"
 #include "libjam/metrics/metrics.hpp"
+#include "libjam/snapshot/reader.hpp"
 #include "tests/jam/graph/hand_made_network.hpp"
 #include "tests/support/csv.hpp"
 
@@ -126,6 +127,36 @@ TEST(MetricsReference, RealFramesAndRandomGraphsAgreeWithIndependentPrograms) {
   EXPECT_EQ(compared.size(), 60u);
   // Chains have a shape where there are chains; distances lead from one random network to the next.
   for (const auto& [metric, count] : compared) EXPECT_GE(count, metric.find("chain") == std::string::npos ? 49u : 20u) << metric;
+}
+
+// Friction, ages, what becomes of contacts, and jams, in three frames of a small run, against h5py, numpy and networkx.
+TEST(MetricsReference, FramesOfARunAgreeWithIndependentPrograms) {
+  const SnapshotSource source = open_jamscope_file(std::string(folder) + "pea.h5");
+  ASSERT_EQ(source.frames, 3u);
+  Criteria criteria;
+  criteria.jam_force = 0.5;
+  std::vector<Snapshot> frames;
+  for (std::size_t k = 0; k < 3; ++k) frames.push_back(source.read(k));
+  std::vector<std::unique_ptr<ContactGraph>> graphs;
+  std::vector<std::unique_ptr<FrameNetwork>> networks;
+  for (const Snapshot& frame : frames) {
+    graphs.push_back(std::make_unique<ContactGraph>(frame, source.info.walls));
+    networks.push_back(std::make_unique<FrameNetwork>(*graphs.back(), source.info, criteria));
+  }
+  std::size_t compared = 0;
+  for (const support::Row& line : support::read_csv(std::string(folder) + "pea.csv")) {
+    const auto k = std::size_t(std::stoul(line.at("frame")));
+    const std::string& metric = line.at("metric");
+    SCOPED_TRACE(metric + " of frame " + line.at("frame"));
+    const auto change = std::find_if(change_metrics().begin(), change_metrics().end(), [&](const ChangeMetric& m) { return m.name == metric; });
+    const Metric* const row = find_metric(metric);
+    ASSERT_TRUE((change != change_metrics().end()) != (row != nullptr));
+    const double value = row != nullptr ? row->value(*networks[k]) : change->value(*networks[k - 1], *networks[k]);
+    const double expected = std::stod(line.at("value"));
+    EXPECT_NEAR(value, expected, 1e-12 * std::max(1e-3, std::abs(expected)));
+    ++compared;
+  }
+  EXPECT_EQ(compared, 3u * 6 + 2 * 4);
 }
 
 // In the box around all spheres of the network, as the script gives it to voro++. Cells that are open to us, farther than four radii,
