@@ -146,8 +146,14 @@ Json rate_json(const jam::Rate& rate) {
   return {{"value", number(rate.value)}, {"low", number(rate.low)}, {"high", number(rate.high)}};
 }
 
-// Of one stream, as seen at every step. Intervals hold 95 %.
-Json step_stream_json(const jam::Analysis::StepStream& stream) {
+Json numbers(const std::vector<double>& values) {
+  Json all = Json::array();
+  for (const double value : values) all.push_back(number(value));
+  return all;
+}
+
+// Of one stream, as seen at every step. Intervals hold 95 %. flow_energy: J, of the whole record.
+Json step_stream_json(const jam::Analysis::StepStream& stream, double flow_energy) {
   const jam::JamStatistics& s = stream.statistics;
   double peak = 0, work = 0;
   std::size_t cut_off = 0;
@@ -164,11 +170,22 @@ Json step_stream_json(const jam::Analysis::StepStream& stream) {
             {"longest_s", number(s.longest)},
             {"largest_force_N", number(peak)},
             {"work_J", number(work)},
+            {"share_of_flow_energy", number(work / flow_energy)},
             {"fano_factor", number(s.fano)},
             {"independent_starts_p", number(s.independence.p)}};
+  json["survival"] = {{"time_s", numbers(s.survival.time)}, {"share", numbers(s.survival.share)}, {"low", numbers(s.survival.low)}, {"high", numbers(s.survival.high)}};
   for (const jam::LawFit& law : s.laws)
     json["laws"][law.name] = {{"parameters", law.fit.parameter}, {"log_likelihood", number(law.fit.log_likelihood)}, {"akaike", number(law.akaike)}};
   return json;
+}
+
+// Turnbull's estimate from what n samples say of each duration; events that no frame saw are not in it.
+Json brackets_json(const jam::Analysis& a) {
+  std::vector<jam::LifetimeBracket> brackets;
+  for (const jam::JamEvent& e : a.events)
+    if (!e.open_at_start) brackets.push_back({e.shortest, e.longest});
+  const jam::TurnbullEstimate estimate = jam::turnbull(brackets);
+  return {{"after_s", numbers(estimate.low)}, {"until_s", numbers(estimate.high)}, {"share_that_ends", numbers(estimate.mass)}};
 }
 
 Json life_json(const jam::ContactLife::Kind& kind) {
@@ -215,6 +232,7 @@ Json analysis_json(const jam::Analysis& a) {
                    {{"frequency_per_s", rate_json(a.corrected.rate)},
                     {"mean_duration_s", {{"value", number(a.corrected.mean)}, {"low", number(a.corrected.low)}, {"high", number(a.corrected.high)}}},
                     {"unseen_share", number(a.corrected.unseen)}}},
+                  {"survival_within_brackets", brackets_json(a)},
                   {"jammed_time_s", number(a.jammed_time)},
                   {"jammed_time_share", number(a.jammed_time / a.observed_time)},
                   {"mean_survival_time_s", number(a.jammed_time / static_cast<double>(a.events.size()))},
@@ -231,7 +249,7 @@ Json analysis_json(const jam::Analysis& a) {
   json["frames_by_jammed_particles"] = a.jammed_histogram;
   json["flow_energy"] = {{"source", a.flow_energy.source}, {"total_J", number(a.flow_energy.total)}};
   for (std::size_t s = 0; s < a.every_step.size(); ++s)
-    json["jams_at_every_step"][std::string(jam::jam_stream_names[s])] = step_stream_json(a.every_step[s]);
+    json["jams_at_every_step"][std::string(jam::jam_stream_names[s])] = step_stream_json(a.every_step[s], a.flow_energy.total);
   if (!a.contact_life.empty()) {
     Json& life = json["contact_life"];
     life["median_s"] = {{"particles", number(jam::median_life(a.contact_life, &jam::ContactLife::particles))},
