@@ -276,7 +276,7 @@ std::string processor() {
   return uname(&name) == 0 ? name.machine : "unknown processor";
 }
 
-ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts) {
+ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts, const jam::Criteria& criteria) {
   ReportContext context;
   context.name = facts.name;
   context.description = facts.description;
@@ -286,6 +286,9 @@ ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts) {
   context.wall_seconds = facts.wall_seconds;
   context.particle_steps_per_second = facts.particle_steps_per_second;
   context.warnings = facts.warnings;
+  if (const jam::JamCriterion& criterion = jam::criterion_of(criteria); criterion.unit != "N")
+    context.warnings.push_back(fmt::format("where this page says above {:g} N, read: {} ({}, threshold {:g})", criteria.jam_force, criterion.doc, criterion.name,
+                                           jam::threshold_of(criteria)));
   if (!info.case_toml.empty()) {
     try {
       const CaseFile file = read_case_text(info.case_toml, "stored case");
@@ -369,7 +372,7 @@ void write_outputs(const std::string& folder, const jam::RunInfo& info, const ja
   if (const std::string jams = jam::step_jams_csv(analysis); !jams.empty()) write_text_file(in_folder("jams.csv"), jams);
   write_text_file(in_folder("summary.json"), summary_json(info, analysis, series, facts));
   jam::write_results(in_folder("jam.h5"), analysis, info);
-  write_text_file(in_folder("report.html"), report_html(info, analysis, series, report_context(info, facts)));
+  write_text_file(in_folder("report.html"), report_html(info, analysis, series, report_context(info, facts, analysis.criteria)));
 }
 
 }  // namespace jamscope

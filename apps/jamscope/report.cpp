@@ -276,7 +276,14 @@ json headline_json(const jam::Analysis& analysis, const jam::Series& series) {
     censored += event.open_at_start || event.open_at_end;
   }
   const bool timed = analysis.observed_time > 0;
-  return {{"events", analysis.events.size()},
+  json every_step;
+  if (!analysis.every_step.empty()) {
+    const jam::JamStatistics& s = analysis.every_step[0].statistics;
+    every_step = {{"events", analysis.every_step[0].jams.size()}, {"grains", analysis.every_step[1].jams.size()},
+                  {"median", number(s.median.value)}, {"longest", number(s.longest)}};
+  }
+  return {{"every_step", every_step},
+          {"events", analysis.events.size()},
           {"bridged", bridged},
           {"censored", censored},
           {"tracks", analysis.tracks.size()},

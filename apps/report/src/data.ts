@@ -42,6 +42,8 @@ export interface Headline {
   jammed_time: number | null; jammed_share: number | null; jam_frequency: number | null;
   largest_force: number | null; largest_force_time: number | null; largest_force_source: string;
   jammed_in_gap_share: number | null;
+  // Of the run's own steps, not of frames; null where the source did not watch them.
+  every_step: { events: number; grains: number; median: number | null; longest: number | null } | null;
 }
 export interface RunData {
   creator: string; creator_version: string; commit: string; created_utc: string;

@@ -68,6 +68,17 @@ test('the running median spans one reading at 25 Hz, or a tenth of a short recor
 describe('headline', () => {
   const value = (data: ReturnType<typeof jammed>, name: RegExp): string => tiles(data).find((t) => name.test(t.name))!.value;
   const note = (data: ReturnType<typeof jammed>, name: RegExp): string => tiles(data).find((t) => name.test(t.name))!.note;
+  test('says what every step of the run saw, where it watched', () => {
+    const data = jammed();
+    expect(value(data, /every step/)).toBe('3');
+    expect(note(data, /every step/)).toBe('5 of single grains; half end within 2.1\u00a0ms');
+    data.headline.every_step = { events: 2, grains: 2, median: null, longest: 0.004 };
+    expect(note(data, /every step/)).toBe('2 of single grains; the longest lasts 4\u00a0ms');
+    data.headline.every_step = { events: 0, grains: 0, median: null, longest: 0 };
+    expect(note(data, /every step/)).toBe('none, also between the frames');
+    data.headline.every_step = null;
+    expect(tiles(data).some((t) => /every step/.test(t.name))).toBe(false);
+  });
   test('names the threshold and gives the rate with its interval', () => {
     const data = jammed();
     data.headline = { ...data.headline, events: 23, observed_time: 2, jam_frequency: 11.5 };

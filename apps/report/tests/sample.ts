@@ -21,6 +21,7 @@ export function jammed(): ReportData {
       events: 2, bridged: 2, censored: 0, tracks: 2, frames: 6, particles: 50, observed_time: 0.012, sampling_interval: 0.002,
       jammed_time: 0.006, jammed_share: 0.5, jam_frequency: 2 / 0.012, largest_force: 130, largest_force_time: 0.0075,
       largest_force_source: 'series', jammed_in_gap_share: 1,
+      every_step: { events: 3, grains: 5, median: 0.0021, longest: 0.004 },
     },
     criteria: { measure: 'sum of the repulsive normal forces', jam_force: 20, bridge_contact_share: 0.1, gap_margin: 0.5, survival_classes: [0.01, 0.02] },
     frames: {
@@ -69,6 +70,6 @@ export function bare(): ReportData {
   return {
     ...d, series: null, flow_energy: { source: 'none', total: null, rows: 0, every: 1, time: [], energy: [] },
     frames: { ...d.frames, largest_force: nothing, mean_force: nothing },
-    headline: { ...d.headline, largest_force: null, largest_force_time: null, largest_force_source: 'frames' },
+    headline: { ...d.headline, largest_force: null, largest_force_time: null, largest_force_source: 'frames', every_step: null },
   };
 }

@@ -33,9 +33,17 @@ export function tiles(data: ReportData): Tile[] {
       note: known(h.observed_time) ? `${withUnit(h.jammed_time, 's')} of ${withUnit(h.observed_time, 's')}` : '',
     },
   ];
+  const steps = h.every_step;
+  const everyStep: Tile[] = steps ? [{
+    name: 'Jams at every step',
+    value: count(steps.events),
+    note: steps.events === 0 ? 'none, also between the frames'
+      : `${count(steps.grains)} of single grains; ${known(steps.median) ? `half end within ${withUnit(steps.median, 's')}` : `the longest lasts ${withUnit(steps.longest, 's')}`}`,
+  }] : [];
   const seen = h.largest_force_source === 'series' ? 'over every step' : 'over the frames only';
   return [
     ...jams,
+    ...everyStep,
     {
       name: 'Largest compressive force',
       value: withUnit(h.largest_force, 'N'),
