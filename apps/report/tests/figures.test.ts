@@ -71,9 +71,9 @@ describe('headline', () => {
   test('says what every step of the run saw, where it watched', () => {
     const data = jammed();
     expect(value(data, /every step/)).toBe('3');
-    expect(note(data, /every step/)).toBe('5 of single grains; half end within 2.1\u00a0ms');
+    expect(note(data, /every step/)).toMatch(/^5 of single grains; half end within 2\.10\sms$/);
     data.headline.every_step = { events: 2, grains: 2, median: null, longest: 0.004 };
-    expect(note(data, /every step/)).toBe('2 of single grains; the longest lasts 4\u00a0ms');
+    expect(note(data, /every step/)).toMatch(/^2 of single grains; the longest lasts 4\.00\sms$/);
     data.headline.every_step = { events: 0, grains: 0, median: null, longest: 0 };
     expect(note(data, /every step/)).toBe('none, also between the frames');
     data.headline.every_step = null;
