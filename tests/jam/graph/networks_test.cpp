@@ -127,7 +127,7 @@ TEST(MaxFlow, IsTheSmallestOfAllCutsAndNamesOne) {
   });
 }
 
-// The least particle side is as good as the whole flow: where the vessel is not pressed at all, nothing flows and nothing is cut.
+// Where only one end is pressed, nothing flows and nothing is cut; the blade reaches what hangs on it.
 TEST(MaxFlow, IsNothingWhereOneEndIsNotPressed) {
   for (const auto wall : {blade_wall, vessel_wall}) {
     const Snapshot s = Network().press(0, wall, 5).touch(0, 1, 3).snapshot();
