@@ -242,7 +242,7 @@ Analysis Pipeline::finish(const Series& series) const {
     const double begin = double(first_step) * info_.dt, end = series.time.back();
     for (const JamStream stream : {JamStream::global, JamStream::particle, JamStream::site}) {
       Analysis::StepStream& found = a.every_step.emplace_back();
-      found.jams = step_jams(stays, stream, detector, blade_, sites, info_.dt, first_step);
+      found.jams = step_jams(stays, stream, detector, blade_, sites, info_.dt, info_.watch_stride, first_step);
       found.statistics = jam_statistics(found.jams, begin, end);
     }
   }

@@ -163,6 +163,7 @@ jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::
   for (std::size_t w = 0; w < setup.walls.size(); ++w)
     info.walls.push_back(wall_info(setup.walls[w], role_of(scene.roles[w]), setup.materials[setup.walls[w].material].name));
   info.watch_force = watch_force(file);
+  info.watch_stride = std::uint64_t{1} << file.physics.levels;
   if (const auto& gap = scene.gap) info.gap = {gap->tip_radius, gap->vessel_radius, gap->blade_low, gap->blade_high};
   return info;
 }

@@ -4,24 +4,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 
 #include "libjam/snapshot/schema.hpp"
 
 namespace jam {
-namespace {
-
-// Steps between two looks at the particles: a power of two, as contacts may step at their own rate.
-std::uint64_t stride_of(const Excursions& e) {
-  std::uint64_t common = 0;
-  for (std::size_t k = 0; k < e.size(); ++k) common = std::gcd(common, std::gcd(e.first_step[k], e.last_step[k]));
-  constexpr std::uint64_t most = 64;
-  return common == 0 ? 1 : std::min(most, common & -common);
-}
-
-}  // namespace
-
 Vec3 in_blade_frame(std::span<const BladePose> poses, double time, const Vec3& position) {
   if (poses.empty()) return position;
   const auto after = std::upper_bound(poses.begin(), poses.end(), time, [](double t, const BladePose& p) { return t < p.time; });
@@ -58,8 +45,7 @@ Excursions last_word(const Excursions& excursions) {
 }
 
 std::vector<StepJam> step_jams(const Excursions& e, JamStream stream, const Detector& detector, std::span<const BladePose> poses,
-                               const Sites& sites, double dt, std::uint64_t first_step) {
-  const std::uint64_t stride = stride_of(e);
+                               const Sites& sites, double dt, std::uint64_t stride, std::uint64_t first_step) {
   const double pause = detector.hold_off * (1 + 1e-9);
   const auto site_of = [&](std::size_t k) {
     return sites.of(in_blade_frame(poses, double(e.peak_step[k]) * dt, e.peak_position[k].cast<double>()));

@@ -60,8 +60,9 @@ inline constexpr std::string_view jam_stream_names[] = {"global", "particle", "s
 // The stays without those whose place a later row takes; by first step, then particle.
 Excursions last_word(const Excursions& excursions);
 
-// `excursions` as last_word() gives them; `dt`, s, of a step; `first_step`, at which the record begins. By start, then smallest member.
+// `excursions` as last_word() gives them; `dt`, s, of a step; `stride`: steps between two looks; `first_step`, at which the
+// record begins. By start, then smallest member.
 std::vector<StepJam> step_jams(const Excursions& excursions, JamStream stream, const Detector& detector, std::span<const BladePose> poses,
-                               const Sites& sites, double dt, std::uint64_t first_step);
+                               const Sites& sites, double dt, std::uint64_t stride, std::uint64_t first_step);
 
 }  // namespace jam

@@ -81,28 +81,13 @@ std::vector<JamEvent> cluster_events(std::span<const Cluster> clusters, const Li
   std::uint32_t count = 0;
   for (const std::uint32_t identity : lineage.identity) count = std::max(count, identity + 1);
   std::vector<JamEvent> events(count);
-  std::vector<std::uint8_t> begun(count, 0);
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     const Cluster& cluster = clusters[k];
     JamEvent& event = events[lineage.identity[k]];
-    if (!begun[lineage.identity[k]]) {
-      begun[lineage.identity[k]] = 1;
-      event.first_frame = cluster.frame;
-      event.start = frames[cluster.frame].time;
-      event.open_at_start = cluster.frame == 0 || gap_before(frames, cluster.frame, interval);
-    }
-    event.last_frame = cluster.frame;
-    event.end = frames[cluster.frame].time;
-    event.bridged = event.bridged || cluster.bridges;
+    if (event.members.empty()) event = begin_event(frames, cluster.frame, interval);
     event.members.insert(event.members.end(), cluster.members.begin(), cluster.members.end());
-    for (const JammedSample& sample : frames[cluster.frame].jammed) {
-      if (!std::binary_search(cluster.members.begin(), cluster.members.end(), sample.particle)) continue;
-      if (!(sample.compressive_force > event.peak_force)) continue;
-      event.peak_force = sample.compressive_force;
-      event.peak_time = frames[cluster.frame].time;
-      event.peak_particle = sample.particle;
-      event.peak_in_gap = sample.in_gap;
-    }
+    for (const JammedSample& sample : frames[cluster.frame].jammed)
+      if (std::binary_search(cluster.members.begin(), cluster.members.end(), sample.particle)) extend_event(event, frames, cluster.frame, sample);
   }
   for (JamEvent& event : events) {
     close_event(event, frames, interval);

@@ -4,9 +4,7 @@
 #include <limits>
 
 namespace jam {
-namespace {
 
-// An event that begins in frame k.
 JamEvent begin_event(std::span<const JamFrame> frames, std::uint32_t k, double interval) {
   JamEvent event;
   event.first_frame = k;
@@ -15,8 +13,7 @@ JamEvent begin_event(std::span<const JamFrame> frames, std::uint32_t k, double i
   return event;
 }
 
-// Frame k belongs to the event, because of this particle among others.
-void extend(JamEvent& event, std::span<const JamFrame> frames, std::uint32_t k, const JammedSample& sample) {
+void extend_event(JamEvent& event, std::span<const JamFrame> frames, std::uint32_t k, const JammedSample& sample) {
   event.last_frame = k;
   event.end = frames[k].time;
   event.bridged = event.bridged || sample.bridged;
@@ -27,8 +24,6 @@ void extend(JamEvent& event, std::span<const JamFrame> frames, std::uint32_t k, 
     event.peak_in_gap = sample.in_gap;
   }
 }
-
-}  // namespace
 
 void close_event(JamEvent& event, std::span<const JamFrame> frames, double interval) {
   const std::size_t next = std::size_t{event.last_frame} + 1;
@@ -48,7 +43,7 @@ std::vector<JamEvent> global_events(std::span<const JamFrame> frames, double int
     const bool continues = jammed && open && !gap_before(frames, k, interval);
     if (jammed && !continues) events.push_back(begin_event(frames, k, interval));
     for (const JammedSample& sample : frames[k].jammed) {
-      extend(events.back(), frames, k, sample);
+      extend_event(events.back(), frames, k, sample);
       events.back().members.push_back(sample.particle);
     }
     open = jammed;
@@ -80,7 +75,7 @@ std::vector<Track> particle_tracks(std::span<const JamFrame> frames, double inte
         track.event.members = {sample.particle};
         tracks.push_back(std::move(track));
       }
-      extend(tracks[index].event, frames, k, sample);
+      extend_event(tracks[index].event, frames, k, sample);
       tracks[index].points.push_back(
           {k, sample.position, sample.velocity, static_cast<float>(sample.compressive_force)});
       still_open.emplace_back(sample.particle, index);

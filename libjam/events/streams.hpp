@@ -16,6 +16,10 @@ std::vector<JamEvent> global_events(std::span<const JamFrame> frames, double int
 // The same for each particle by itself, by first frame, then particle id.
 std::vector<Track> particle_tracks(std::span<const JamFrame> frames, double interval);
 
+// What events of any stream are put together from. One that begins in frame k:
+JamEvent begin_event(std::span<const JamFrame> frames, std::uint32_t k, double interval);
+// Frame k belongs to it, because of this particle among others.
+void extend_event(JamEvent& event, std::span<const JamFrame> frames, std::uint32_t k, const JammedSample& sample);
 // What follows from an event's first and last frame: its samples, its bracket, whether the record cuts it off at its end.
 void close_event(JamEvent& event, std::span<const JamFrame> frames, double interval);
 

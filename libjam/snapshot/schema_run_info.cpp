@@ -147,7 +147,10 @@ void write_run_info(h5::File& file, const RunInfo& info) {
 
   file.make_group("/run");
   set(file, column<std::uint8_t>("/run@wall_loads_known"), std::uint8_t{info.wall_loads_known});
-  if (info.watch_force > 0) set(file, column<double>("/run@watch_force"), info.watch_force);
+  if (info.watch_force > 0) {
+    set(file, column<double>("/run@watch_force"), info.watch_force);
+    set(file, column<std::uint64_t>("/run@watch_stride"), info.watch_stride);
+  }
   const Gap& gap = info.gap;
   if (gap.tip_radius != 0 || gap.vessel_radius != 0 || gap.z_low != 0 || gap.z_high != 0) {
     visit_gap([&](const Item& i, double Gap::*member) { set(file, i, gap.*member); });
@@ -197,6 +200,7 @@ RunInfo read_run_info(const h5::File& file) {
   get_optional(file, column<double>("/@dt"), info.dt);
   info.wall_loads_known = get<std::uint8_t>(file, column<std::uint8_t>("/run@wall_loads_known")) != 0;
   get_optional(file, column<double>("/run@watch_force"), info.watch_force);
+  get_optional(file, column<std::uint64_t>("/run@watch_stride"), info.watch_stride);
   visit_gap([&](const Item& i, double Gap::*member) { get_optional(file, i, info.gap.*member); });
   if (file.exists("/case/toml")) info.case_toml = file.read_text("/case/toml");
   if (file.exists("/case/argv")) info.argv = file.read_texts("/case/argv");

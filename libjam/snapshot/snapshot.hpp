@@ -152,6 +152,7 @@ struct RunInfo {
   std::vector<Wall> walls;
   Gap gap;
   double watch_force = 0;  // N, excursions are stays above it; 0 where there are none
+  std::uint64_t watch_stride = 1;  // steps between two looks at the particles
   bool wall_loads_known = true;  // WallState::force and torque were recorded, not left at zero
 };
 

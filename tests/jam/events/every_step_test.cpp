@@ -32,7 +32,7 @@ void add(Excursions& e, ParticleId particle, std::uint64_t first, std::uint64_t 
 }
 
 std::vector<StepJam> jams_of(const Excursions& e, JamStream stream, const Detector& detector = {}, std::uint64_t first_step = 0) {
-  return step_jams(last_word(e), stream, detector, {}, Sites{}, dt, first_step);
+  return step_jams(last_word(e), stream, detector, {}, Sites{}, dt, 1, first_step);
 }
 
 // A hand-over without a pause is one global jam and two of particles; two at once are one; a pause of one step parts two.
@@ -89,6 +89,17 @@ TEST(StepJams, KeepTheLastWordOnAStayAndSayWhatTheRecordCutsOff) {
   const auto lifetimes = lifetimes_of(jams);
   ASSERT_EQ(lifetimes.size(), 1u);
   EXPECT_FALSE(lifetimes[0].ended);
+}
+
+// Looks every eight steps: a stay seen at one look lasts eight steps, and one that begins at the next look goes on.
+TEST(StepJams, LastFromOneLookToTheNext) {
+  Excursions e;
+  add(e, 1, 64, 64, 30);
+  add(e, 2, 72, 80, 30);
+  const auto jams = step_jams(e, JamStream::global, {}, {}, Sites{}, dt, 8, 0);
+  ASSERT_EQ(jams.size(), 1u);
+  EXPECT_DOUBLE_EQ(jams[0].duration, 24e-6);
+  EXPECT_EQ(step_jams(e, JamStream::global, {}, {}, Sites{}, dt, 1, 0).size(), 2u);
 }
 
 // Against a signal written out step by step: which steps any particle, or each, is above; pauses filled in; runs counted.
@@ -169,8 +180,8 @@ TEST(Sites, AreSectorsOfTheBladeAndLayersOfItsHeight) {
   Excursions e;
   add(e, 1, 10, 50, 30, Vec3f(1, 0, 1e-3F));
   add(e, 2, 20, 60, 30, Vec3f(-1, 0, 1e-3F));
-  EXPECT_EQ(step_jams(e, JamStream::global, {}, {}, sites, dt, 0).size(), 1u);
-  const auto by_site = step_jams(e, JamStream::site, {}, {}, sites, dt, 0);
+  EXPECT_EQ(step_jams(e, JamStream::global, {}, {}, sites, dt, 1, 0).size(), 1u);
+  const auto by_site = step_jams(e, JamStream::site, {}, {}, sites, dt, 1, 0);
   ASSERT_EQ(by_site.size(), 2u);
   EXPECT_EQ(by_site[0].site, 0u);
   EXPECT_EQ(by_site[1].site, 1u);
