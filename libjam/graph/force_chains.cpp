@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "libjam/graph/components.hpp"
 #include "libjam/graph/contact_force.hpp"
@@ -28,10 +29,12 @@ std::vector<std::uint8_t> loaded(const std::vector<Load>& load, double level) {
   return above;
 }
 
-// Cosine of the angle between the branch to a partner and the particle's load, > 0 ahead of it, < 0 behind.
-double along(const ContactGraph& graph, const std::vector<Load>& load, Vertex v, Vertex partner) {
-  const Vec3 branch = place(graph, partner) - place(graph, v);
-  return branch.dot(load[v].direction) / branch.norm();
+// Cosines of the angles between a contact's branch and the loads of its two particles, each seen from that particle: > 0 where the partner
+// is ahead of it, < 0 behind.
+std::array<double, 2> along(const ContactGraph& graph, const std::vector<Load>& load, const std::array<std::uint32_t, 2>& row) {
+  const Vec3 branch = place(graph, row[1]) - place(graph, row[0]);
+  const double length = branch.norm();
+  return {branch.dot(load[row[0]].direction) / length, -branch.dot(load[row[1]].direction) / length};
 }
 
 // [C] 1 where a contact is a link of a chain.
@@ -40,22 +43,25 @@ std::vector<std::uint8_t> find_links(const ContactGraph& graph, const std::vecto
   const auto& rows = graph.snapshot().pp.row;
   const double least = std::cos(rules.angle);
   std::vector<std::uint8_t> link(rows.size(), 0);
+  std::vector<std::array<double, 2>> cosine(rows.size());  // of links
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    const auto [a, b] = rows[c];
-    link[c] = above[a] && above[b] && std::abs(along(graph, load, a, b)) >= least && std::abs(along(graph, load, b, a)) >= least;
+    if (!above[rows[c][0]] || !above[rows[c][1]]) continue;
+    cosine[c] = along(graph, load, rows[c]);
+    link[c] = std::abs(cosine[c][0]) >= least && std::abs(cosine[c][1]) >= least;
   }
   if (rules.branching) return link;
 
   // Each particle's best link ahead of it and behind.
   std::vector<std::array<std::uint32_t, 2>> best(graph.vertex_count(), {none, none});
   for (Vertex v = 0; v < graph.vertex_count(); ++v) {
+    if (!above[v]) continue;
     std::array<double, 2> most{0, 0};
     for (const ContactGraph::Neighbor& n : graph.neighbors(v)) {  // ascending, so that ties go to the smaller row
       if (!link[n.contact]) continue;
-      const double cosine = along(graph, load, v, n.vertex);
-      const std::size_t side = cosine < 0;
-      if (!(std::abs(cosine) > most[side])) continue;
-      most[side] = std::abs(cosine);
+      const double seen = cosine[n.contact][rows[n.contact][0] != v];
+      const std::size_t side = seen < 0;
+      if (!(std::abs(seen) > most[side])) continue;
+      most[side] = std::abs(seen);
       best[v][side] = n.contact;
     }
   }
@@ -66,26 +72,28 @@ std::vector<std::uint8_t> find_links(const ContactGraph& graph, const std::vecto
 
 // The particles of a component of links in the order in which a line runs through them.
 std::vector<Vertex> in_line(const ContactGraph& graph, const std::vector<std::uint8_t>& link, const std::vector<Vertex>& members) {
+  struct Partners {
+    std::array<Vertex, 2> vertex{none, none};
+    std::size_t count = 0;
+  };
   const auto linked = [&](Vertex v) {
-    std::vector<Vertex> partners;
+    Partners partners;  // ascending; at most one ahead and one behind
     for (const ContactGraph::Neighbor& n : graph.neighbors(v))
-      if (link[n.contact]) partners.push_back(n.vertex);
-    return partners;  // ascending
+      if (link[n.contact]) partners.vertex[partners.count++] = n.vertex;
+    return partners;
   };
   Vertex at = members.front();
   for (const Vertex v : members)
-    if (linked(v).size() == 1) {
+    if (linked(v).count == 1) {
       at = v;
       break;
     }
   std::vector<Vertex> line{at};
+  line.reserve(members.size());
   for (Vertex before = none; line.size() < members.size();) {
-    for (const Vertex next : linked(at))
-      if (next != before) {
-        before = at;
-        at = next;
-        break;
-      }
+    const auto [first, second] = linked(at).vertex;
+    const Vertex next = first != before ? first : second;
+    before = std::exchange(at, next);
     line.push_back(at);
   }
   return line;

@@ -5,6 +5,7 @@
 //   network_bench --edges FILE                         writes the network as `a b normal_force`, and `a -1 force` for the blade, `a -2 force`
 //                                                      for the vessel, for other programs (tests/bench/networks/compare.py); then ends
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <cmath>
 #include <cstdio>
@@ -195,6 +196,8 @@ int write_edges(const char* path) {
 
 int main(int argc, char** argv) {
   if (argc == 3 && std::strcmp(argv[1], "--edges") == 0) return write_edges(argv[2]);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // as the program does: apps/jamscope/main.cpp
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();
