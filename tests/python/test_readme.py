@@ -27,6 +27,7 @@ class Readme(unittest.TestCase):
         shutil.copy(ROOT / "apps" / "python" / "read_run.py", folder)
         before = os.getcwd()
         os.chdir(folder)
+        os.environ["XDG_CACHE_HOME"] = str(SCRATCH)  # of settled beds
         try:
             for block in blocks:
                 with self.subTest(block), contextlib.redirect_stdout(io.StringIO()) as printed:
