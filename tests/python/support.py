@@ -1,6 +1,8 @@
 """What the tests of the Python module share: where things are, a small case, and how to run the program."""
+import atexit
 import csv
 import os
+import shutil
 import subprocess
 import tempfile
 import warnings
@@ -18,8 +20,8 @@ JAM_FORCE = 0.5  # N, at which some of its grains are jammed
 warnings.filterwarnings("ignore", message=".*will be crushed there")
 
 # The bed of the small case settles once for all tests of a process.
-_scratch = tempfile.TemporaryDirectory()
-SCRATCH = Path(_scratch.name)
+SCRATCH = Path(tempfile.mkdtemp(prefix="jamscope_"))
+atexit.register(shutil.rmtree, SCRATCH, ignore_errors=True)
 BEDS = SCRATCH / "beds"
 SHORT = {"run.duration": "0.5 ms", "output.frame_interval": "0.1 ms", "output.series_interval": "0.02 ms", "output.checkpoint_interval": "0.2 ms",
          "analysis.jam_force": "0.5 N"}

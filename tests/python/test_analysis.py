@@ -102,7 +102,7 @@ class Analysis(unittest.TestCase):
 
     def test_every_option_reaches_the_criteria(self):
         a = jamscope.analyze(PEA, jam_force=2, end_force=0.5, hold_off=1e-4, shortest_jam="2 us", bridge_contact_share=0.2, gap_margin=1.0,
-                             survival_classes=[0.001, 0.002], measure="max", metrics=["coordination"])
+                             survival_classes=numpy.array([0.001, 0.002]), measure="max", metrics=["coordination"])
         c = a.criteria
         self.assertEqual((c.jam_force, c.end_force, c.hold_off, c.shortest_jam, c.bridge_contact_share, c.gap_margin), (2, 0.5, 1e-4, 2e-6, 0.2, 1))
         self.assertEqual((c.survival_classes, c.measure, c.metrics, c.criterion, c.threshold), ([0.001, 0.002], "max", ["coordination"], "compressive_force", None))

@@ -9,6 +9,7 @@ import h5py
 import numpy
 
 import jamscope
+import read_run
 from support import SCRATCH, SHORT, simulate, simulate_by_program, small_case
 
 
@@ -96,6 +97,18 @@ class Simulate(unittest.TestCase):
             self.assertEqual(len(jamscope.open(output / "run.h5")), at + 1)
             self.assertEqual(len(jamscope.read_results(output).frames), at + 1)
         self.assertTrue(simulate(SCRATCH / "failed3", resume=True).finished)
+
+    def test_the_callback_may_read_the_file(self):
+        output, counts = SCRATCH / "read_meanwhile", []
+
+        def read(frame):
+            with read_run.open_run(output / "run.h5") as file:
+                position = read_run.read_frame(file, -1)["particles"]["position"]
+                run = jamscope.open(output / "run.h5")
+                counts.append((read_run.frame_count(file), len(run), bool((position == frame.particles.position).all() and (position == run[-1].particles.position).all())))
+
+        simulate(output, read, until=0.2e-3)
+        self.assertEqual(counts, [(k, k, True) for k in (1, 2, 3)])
 
     def test_until(self):
         self.assertAlmostEqual(simulate(SCRATCH / "until", until=0.2e-3).time, 0.2e-3, 12)

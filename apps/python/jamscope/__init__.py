@@ -58,10 +58,10 @@ def _text(value: Any, unit: str = "") -> str:
         return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, (list, tuple)) or getattr(value, "ndim", 0) == 1:  # arrays too
+        return "[" + ", ".join(_text(v, unit) for v in value) + "]"
     if isinstance(value, int) or hasattr(value, "__index__"):
         return f'"{int(value)} {unit}"' if unit else str(int(value))
-    if isinstance(value, (list, tuple)) or getattr(value, "ndim", 0) == 1:
-        return "[" + ", ".join(_text(v, unit) for v in value) + "]"
     return f'"{float(value)!r} {unit}"' if unit else repr(float(value))
 
 
@@ -117,7 +117,8 @@ def simulate(case: Path, output: Path, callback: Optional[Callable[[Frame], Any]
 
     callback: called with each frame as soon as it is in the file, the first one too; its arrays stay valid. Where it returns False the run stops:
         its checkpoint and the results so far are written. So too where it raises, or on Ctrl-C, and then the exception goes on to the caller.
-        Other Python threads run while the simulation steps.
+        Other Python threads run while the simulation steps. It may open the run's files, but not hold them open with h5py: HDF5 does not let one
+        process write what it reads.
     until: s, or a text with its unit ("0.5 s"); stops there instead of at the case's end.
     threads: 0: as many as there are processors. The results do not depend on it.
     resume: go on from the last checkpoint in `output`.
