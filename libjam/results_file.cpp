@@ -9,114 +9,17 @@
 
 namespace jam {
 
-template <class Visit>
-void columns_of(JamEvent*, Visit&& column) {
-  column("first_frame", &JamEvent::first_frame, "1", "row of /frames");
-  column("last_frame", &JamEvent::last_frame, "1", "row of /frames, inclusive");
-  column("samples", &JamEvent::samples, "1", "frames above the threshold, n");
-  column("start", &JamEvent::start, "s", "time of the first sample above the threshold");
-  column("end", &JamEvent::end, "s", "time of the last sample above the threshold");
-  column("survival_time", &JamEvent::survival_time, "s", "n times the sampling interval");
-  column("shortest", &JamEvent::shortest, "s", "lower bound of the duration, (n-1) sampling intervals");
-  column("longest", &JamEvent::longest, "s", "upper bound, (n+1) sampling intervals; infinite where cut off");
-  column("open_at_start", &JamEvent::open_at_start, "1", "the record begins inside the event");
-  column("open_at_end", &JamEvent::open_at_end, "1", "the record ends inside the event");
-  column("peak_force", &JamEvent::peak_force, "N", "largest compressive force of a particle");
-  column("peak_time", &JamEvent::peak_time, "s", "when");
-  column("peak_particle", &JamEvent::peak_particle, "1", "id of the particle that carried it");
-  column("peak_in_gap", &JamEvent::peak_in_gap, "1", "that particle sat in the gap then");
-  column("bridged", &JamEvent::bridged, "1", "force went from a blade to a vessel in one of its frames or more");
-  column("least_gap", &JamEvent::least_gap, "m", "the smallest of the clusters that bridged; NaN where none did");
-}
-
-template <class Visit>
-void columns_of(ClusterLink*, Visit&& column) {
-  column("from", &ClusterLink::from, "1", "row of /clusters");
-  column("to", &ClusterLink::to, "1", "row of /clusters, in the next frame");
-  column("shared", &ClusterLink::shared, "1", "particles that both have; 0: a hand-over at the same site");
-}
-
-template <class Visit>
-void columns_of(SurvivalClass*, Visit&& column) {
-  column("low", &SurvivalClass::low, "s", "survival times from here");
-  column("high", &SurvivalClass::high, "s", "to below here");
-  column("events", &SurvivalClass::events, "1", "global events in the class");
-  column("frequency", &SurvivalClass::frequency, "1/s", "events over observed time");
-  column("share_of_jam_time", &SurvivalClass::share_of_jam_time, "1", "of the summed survival times");
-}
-
-// One octave of life, flat.
-struct ContactLifeRow {
-  double from = 0, to = 0;
-  std::uint32_t ended_pp = 0, alive_pp = 0, ended_pw = 0, alive_pw = 0;
-  double together_pp = 0, together_pw = 0;
-};
-
-template <class Visit>
-void columns_of(ContactLifeRow*, Visit&& column) {
-  column("from", &ContactLifeRow::from, "s", "life of a contact from here");
-  column("to", &ContactLifeRow::to, "s", "to below here");
-  column("ended_pp", &ContactLifeRow::ended_pp, "1", "contacts of particles that lasted so long");
-  column("alive_pp", &ContactLifeRow::alive_pp, "1", "contacts of particles that are so old in the last frame");
-  column("together_pp", &ContactLifeRow::together_pp, "1", "share of contacts of particles that is still there at `from`");
-  column("ended_pw", &ContactLifeRow::ended_pw, "1", "contacts with walls that lasted so long");
-  column("alive_pw", &ContactLifeRow::alive_pw, "1", "contacts with walls that are so old in the last frame");
-  column("together_pw", &ContactLifeRow::together_pw, "1", "share of contacts with walls that is still there at `from`");
-}
-
-template <class Visit>
-void columns_of(FlowEnergy*, Visit&& column) {
-  column("time", &FlowEnergy::time, "s", "end of the window, or time of the frame");
-  column("power", &FlowEnergy::power, "W", "power that the blades put into the grains");
-  column("energy", &FlowEnergy::energy, "J", "work done up to this time");
-}
-
-template <class Visit>
-void columns_of(StepJam*, Visit&& column) {
-  column("start", &StepJam::start, "s", "first step above");
-  column("end", &StepJam::end, "s", "last step above");
-  column("duration", &StepJam::duration, "s", "steps above and pauses between them");
-  column("open_at_start", &StepJam::open_at_start, "1", "it was there when the record began");
-  column("open_at_end", &StepJam::open_at_end, "1", "it is there where the record ends");
-  column("peak_force", &StepJam::peak_force, "N", "largest compressive force of a particle");
-  column("peak_time", &StepJam::peak_time, "s", "when");
-  column("peak_particle", &StepJam::peak_particle, "1", "id of the particle that carried it");
-  column("site", &StepJam::site, "1", "sector + 2 layer of the blade, where that was");
-  column("impulse", &StepJam::impulse, "N s", "integral of the members' compressive forces");
-  column("work", &StepJam::work, "J", "that walls did on the members at their contacts");
-  column("share_of_flow_energy", &StepJam::share_of_flow_energy, "1", "that work over the blades' in the whole record");
-  column("path", &StepJam::path, "m", "integral of the speed of the particle with the peak, in its stay");
-  column("turned", &StepJam::turned, "rad", "integral of its angular speed");
-  column("stays", &StepJam::stays, "1", "stays of particles above the force");
-}
-
 namespace {
 
 constexpr const char* format_name = "jamscope-analysis";
 using Version = std::array<std::uint32_t, 2>;
 constexpr Version schema_version{2, 0};  // a larger second number only adds items
 
-std::vector<ContactLifeRow> rows_of(const std::vector<ContactLife>& life) {
-  std::vector<ContactLifeRow> rows;
-  for (const ContactLife& l : life)
-    rows.push_back({l.from, l.to, l.particles.ended, l.particles.alive, l.walls.ended, l.walls.alive, l.particles.together, l.walls.together});
-  return rows;
-}
-
 std::vector<ContactLife> life_of(const std::vector<ContactLifeRow>& rows) {
   std::vector<ContactLife> life;
   for (const ContactLifeRow& r : rows)
     life.push_back({r.from, r.to, {r.ended_pp, r.alive_pp, r.together_pp}, {r.ended_pw, r.alive_pw, r.together_pw}});
   return life;
-}
-
-template <class Visit>
-void scalars_of(Analysis*, Visit&& scalar) {
-  scalar("observed_time", &Analysis::observed_time, "s", "frames times sampling interval");
-  scalar("sampling_interval", &Analysis::sampling_interval, "s", "median distance of frames");
-  scalar("jammed_time", &Analysis::jammed_time, "s", "summed survival times of the global events");
-  scalar("jam_frequency", &Analysis::jam_frequency, "1/s", "global events over observed time");
-  scalar("jammed_in_gap_share", &Analysis::jammed_in_gap_share, "1", "of all jammed particle samples");
 }
 
 template <class Visit>
@@ -194,20 +97,7 @@ void write_tracks(h5::File& file, const std::vector<Track>& tracks) {
   file.write("/tracks/particle", particle, "1", "id of the particle");
   const auto points = write_parts(file, "/tracks", "point", "/tracks/points", tracks,
                                   [](const Track& t) -> const std::vector<Track::Point>& { return t.points; });
-  write_table<JammedSample>(file, "/tracks/points", points, [](const Track::Point& p) -> const JammedSample& { return p; });
-  std::vector<std::uint32_t> frame;
-  for (const Track::Point& point : points) frame.push_back(point.frame);
-  file.write("/tracks/points/frame", frame, "1", "row of /frames");
-}
-
-std::vector<Track::Point> read_points(const h5::File& file) {
-  const auto samples = read_table<JammedSample>(file, "/tracks/points");
-  const auto frame = file.read<std::uint32_t>("/tracks/points/frame");
-  if (frame.size() != samples.size()) file.fail("/tracks/points/frame", "expected " + std::to_string(samples.size()) + " rows");
-  std::vector<Track::Point> points;
-  points.reserve(samples.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) points.push_back({samples[k], frame[k]});
-  return points;
+  write_table(file, "/tracks/points", points);
 }
 
 std::vector<Track> read_tracks(const h5::File& file) {
@@ -215,7 +105,7 @@ std::vector<Track> read_tracks(const h5::File& file) {
   const auto particle = file.read<ParticleId>("/tracks/particle");
   if (particle.size() != events.size())
     file.fail("/tracks/particle", "expected " + std::to_string(events.size()) + " rows");
-  auto points = read_parts(file, "/tracks", "point", read_points(file), events.size());
+  auto points = read_parts(file, "/tracks", "point", read_table<Track::Point>(file, "/tracks/points"), events.size());
   std::vector<Track> tracks(events.size());
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     tracks[k] = {particle[k], events[k], std::move(points[k])};

@@ -60,6 +60,111 @@ void columns_of(JammedSample*, Visit&& column) {
   column("least_gap", &JammedSample::least_gap, "m", "of that cluster; NaN where there is none");
 }
 
+template <class Visit>
+void columns_of(JamEvent*, Visit&& column) {
+  column("first_frame", &JamEvent::first_frame, "1", "row of /frames");
+  column("last_frame", &JamEvent::last_frame, "1", "row of /frames, inclusive");
+  column("samples", &JamEvent::samples, "1", "frames above the threshold, n");
+  column("start", &JamEvent::start, "s", "time of the first sample above the threshold");
+  column("end", &JamEvent::end, "s", "time of the last sample above the threshold");
+  column("survival_time", &JamEvent::survival_time, "s", "n times the sampling interval");
+  column("shortest", &JamEvent::shortest, "s", "lower bound of the duration, (n-1) sampling intervals");
+  column("longest", &JamEvent::longest, "s", "upper bound, (n+1) sampling intervals; infinite where cut off");
+  column("open_at_start", &JamEvent::open_at_start, "1", "the record begins inside the event");
+  column("open_at_end", &JamEvent::open_at_end, "1", "the record ends inside the event");
+  column("peak_force", &JamEvent::peak_force, "N", "largest compressive force of a particle");
+  column("peak_time", &JamEvent::peak_time, "s", "when");
+  column("peak_particle", &JamEvent::peak_particle, "1", "id of the particle that carried it");
+  column("peak_in_gap", &JamEvent::peak_in_gap, "1", "that particle sat in the gap then");
+  column("bridged", &JamEvent::bridged, "1", "force went from a blade to a vessel in one of its frames or more");
+  column("least_gap", &JamEvent::least_gap, "m", "the smallest of the clusters that bridged; NaN where none did");
+}
+
+template <class Visit>
+void columns_of(ClusterLink*, Visit&& column) {
+  column("from", &ClusterLink::from, "1", "row of /clusters");
+  column("to", &ClusterLink::to, "1", "row of /clusters, in the next frame");
+  column("shared", &ClusterLink::shared, "1", "particles that both have; 0: a hand-over at the same site");
+}
+
+template <class Visit>
+void columns_of(Track::Point*, Visit&& column) {
+  column("frame", &Track::Point::frame, "1", "row of /frames");
+  columns_of(static_cast<JammedSample*>(nullptr), [&]<class T>(const char* name, T JammedSample::*member, const char* unit, const char* doc) {
+    column(name, static_cast<T Track::Point::*>(member), unit, doc);
+  });
+}
+
+template <class Visit>
+void columns_of(SurvivalClass*, Visit&& column) {
+  column("low", &SurvivalClass::low, "s", "survival times from here");
+  column("high", &SurvivalClass::high, "s", "to below here");
+  column("events", &SurvivalClass::events, "1", "global events in the class");
+  column("frequency", &SurvivalClass::frequency, "1/s", "events over observed time");
+  column("share_of_jam_time", &SurvivalClass::share_of_jam_time, "1", "of the summed survival times");
+}
+
+// One octave of life, flat.
+struct ContactLifeRow {
+  double from = 0, to = 0;
+  std::uint32_t ended_pp = 0, alive_pp = 0, ended_pw = 0, alive_pw = 0;
+  double together_pp = 0, together_pw = 0;
+};
+
+template <class Visit>
+void columns_of(ContactLifeRow*, Visit&& column) {
+  column("from", &ContactLifeRow::from, "s", "life of a contact from here");
+  column("to", &ContactLifeRow::to, "s", "to below here");
+  column("ended_pp", &ContactLifeRow::ended_pp, "1", "contacts of particles that lasted so long");
+  column("alive_pp", &ContactLifeRow::alive_pp, "1", "contacts of particles that are so old in the last frame");
+  column("together_pp", &ContactLifeRow::together_pp, "1", "share of contacts of particles that is still there at `from`");
+  column("ended_pw", &ContactLifeRow::ended_pw, "1", "contacts with walls that lasted so long");
+  column("alive_pw", &ContactLifeRow::alive_pw, "1", "contacts with walls that are so old in the last frame");
+  column("together_pw", &ContactLifeRow::together_pw, "1", "share of contacts with walls that is still there at `from`");
+}
+
+template <class Visit>
+void columns_of(FlowEnergy*, Visit&& column) {
+  column("time", &FlowEnergy::time, "s", "end of the window, or time of the frame");
+  column("power", &FlowEnergy::power, "W", "power that the blades put into the grains");
+  column("energy", &FlowEnergy::energy, "J", "work done up to this time");
+}
+
+template <class Visit>
+void columns_of(StepJam*, Visit&& column) {
+  column("start", &StepJam::start, "s", "first step above");
+  column("end", &StepJam::end, "s", "last step above");
+  column("duration", &StepJam::duration, "s", "steps above and pauses between them");
+  column("open_at_start", &StepJam::open_at_start, "1", "it was there when the record began");
+  column("open_at_end", &StepJam::open_at_end, "1", "it is there where the record ends");
+  column("peak_force", &StepJam::peak_force, "N", "largest compressive force of a particle");
+  column("peak_time", &StepJam::peak_time, "s", "when");
+  column("peak_particle", &StepJam::peak_particle, "1", "id of the particle that carried it");
+  column("site", &StepJam::site, "1", "sector + 2 layer of the blade, where that was");
+  column("impulse", &StepJam::impulse, "N s", "integral of the members' compressive forces");
+  column("work", &StepJam::work, "J", "that walls did on the members at their contacts");
+  column("share_of_flow_energy", &StepJam::share_of_flow_energy, "1", "that work over the blades' in the whole record");
+  column("path", &StepJam::path, "m", "integral of the speed of the particle with the peak, in its stay");
+  column("turned", &StepJam::turned, "rad", "integral of its angular speed");
+  column("stays", &StepJam::stays, "1", "stays of particles above the force");
+}
+
+inline std::vector<ContactLifeRow> rows_of(const std::vector<ContactLife>& life) {
+  std::vector<ContactLifeRow> rows;
+  for (const ContactLife& l : life)
+    rows.push_back({l.from, l.to, l.particles.ended, l.particles.alive, l.walls.ended, l.walls.alive, l.particles.together, l.walls.together});
+  return rows;
+}
+
+template <class Visit>
+void scalars_of(Analysis*, Visit&& scalar) {
+  scalar("observed_time", &Analysis::observed_time, "s", "frames times sampling interval");
+  scalar("sampling_interval", &Analysis::sampling_interval, "s", "median distance of frames");
+  scalar("jammed_time", &Analysis::jammed_time, "s", "summed survival times of the global events");
+  scalar("jam_frequency", &Analysis::jam_frequency, "1/s", "global events over observed time");
+  scalar("jammed_in_gap_share", &Analysis::jammed_in_gap_share, "1", "of all jammed particle samples");
+}
+
 // HDF5 has no truth values: stored as 0 and 1.
 template <class T>
 using Stored = std::conditional_t<std::is_same_v<T, bool>, std::uint8_t, T>;

@@ -12,7 +12,6 @@
 #include "apps/jamscope/outputs.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/jamming/jam_criteria.hpp"
-#include "libjam/partial_file.hpp"
 #include "libjam/snapshot/schema.hpp"
 
 namespace jamscope {
@@ -93,6 +92,19 @@ std::string in_folder(const std::string& folder) { return (std::filesystem::path
 
 }  // namespace
 
+jam::PartialAnalysis examine_frames(const jam::SnapshotSource& source, const jam::Pipeline& pipeline, FrameRange range, int threads,
+                                    const std::function<void(const jam::FrameSummary&)>& seen) {
+  jam::PartialAnalysis part{source.info, pipeline.criteria(), range.first, {}, series_of(source, range)};
+  const auto examine = [&](std::size_t frame, const jam::Snapshot*, const jam::Snapshot& snapshot) {
+    return pipeline.examine(snapshot, frame);
+  };
+  for_frames_in_flight(source, range.first, range.last, threads, false, examine, [&](jam::ExaminedFrame frame) {
+    seen(frame.summary);
+    part.frames.push_back(std::move(frame));
+  });
+  return part;
+}
+
 int analyze(const AnalyzeOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   Console console(stderr, options.log_format, options.quiet);
@@ -110,16 +122,11 @@ int analyze(const AnalyzeOptions& options) {
   progress.stage = "analyze";
   progress.unit = "frames";
   progress.total = static_cast<double>(range.last - range.first);
-  jam::PartialAnalysis part{source.info, pipeline.criteria(), range.first, {}, series_of(source, range)};
-  const auto examine = [&](std::size_t frame, const jam::Snapshot*, const jam::Snapshot& snapshot) {
-    return pipeline.examine(snapshot, frame);
-  };
   std::size_t events = 0;
   bool jammed_before = false;
-  for_frames_in_flight(source, range.first, range.last, options.threads, false, examine, [&](jam::ExaminedFrame frame) {
+  const jam::PartialAnalysis part = examine_frames(source, pipeline, range, options.threads, [&](const jam::FrameSummary& summary) {
     if (stop_requested()) throw UsageError("interrupted: nothing was written");
-    const jam::FrameSummary& summary = frame.summary;
-    progress.done = static_cast<double>(part.frames.size() + 1);
+    progress.done += 1;
     progress.contacts = summary.particle_contacts + summary.wall_contacts;
     progress.largest_force = summary.largest_compressive_force;
     progress.jammed = summary.jammed;
@@ -127,7 +134,6 @@ int analyze(const AnalyzeOptions& options) {
     jammed_before = summary.jammed > 0;
     progress.events = events;
     console.progress(progress);
-    part.frames.push_back(std::move(frame));
   });
   console.finished(progress);
 

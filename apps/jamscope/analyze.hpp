@@ -1,11 +1,13 @@
 // jamscope analyze: the analysis of stored snapshots, the same as that of a running simulation.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "apps/jamscope/console.hpp"
 #include "apps/jamscope/stored_run.hpp"
 #include "libjam/analysis.hpp"
+#include "libjam/partial_file.hpp"
 
 namespace jamscope {
 
@@ -26,6 +28,15 @@ struct AnalyzeOptions {
 // Writes the result files into options.output and prints what was found. Returns the exit code; throws like the
 // libraries, and UsageError.
 int analyze(const AnalyzeOptions& options);
+
+struct FrameRange {
+  std::size_t first = 0, last = 0;  // [first, last)
+};
+
+// What is found in these frames of a stored run, up to `threads` of them examined at a time, and the rows of the series that came with them.
+// `seen` is called for each frame, in order; what it throws comes out here.
+jam::PartialAnalysis examine_frames(const jam::SnapshotSource& source, const jam::Pipeline& pipeline, FrameRange range, int threads,
+                                    const std::function<void(const jam::FrameSummary&)>& seen);
 
 struct MergeOptions {
   std::vector<std::string> parts;  // partial.h5 of `analyze --partial`, or folders that hold one

@@ -11,7 +11,6 @@
 #include "apps/jamscope/console.hpp"
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/frames_in_flight.hpp"
-#include "apps/jamscope/toml_reader.hpp"
 #include "libjam/metrics/metrics.hpp"
 
 namespace jamscope {
@@ -24,15 +23,7 @@ std::vector<Row> chosen_metrics(std::span<const Row> table, const MetricsOptions
   if (options.names.empty())
     std::copy_if(table.begin(), table.end(), std::back_inserter(chosen),
                  [&](const Row& r) { return options.all || r.cost == jam::Cost::low; });
-  for (const std::string& name : options.names) {
-    const auto row = std::find_if(table.begin(), table.end(), [&](const Row& r) { return r.name == name; });
-    if (row == table.end()) {
-      std::vector<std::string> known;
-      for (const Row& r : table) known.emplace_back(r.name);
-      throw UsageError(fmt::format("unknown metric '{}'{}", name, suggestion(name, known)));
-    }
-    chosen.push_back(*row);
-  }
+  for (const std::string& name : options.names) chosen.push_back(metric_named(table, name));
   return chosen;
 }
 

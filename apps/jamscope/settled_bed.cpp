@@ -22,7 +22,7 @@ std::string bed_text(const dem::BedReport& r) {
 }  // namespace
 
 dem::SettledBed settled_bed(const CaseFile& file, const dem::Scene& scene, const std::string& cache,
-                            Console& console) {
+                            Console& console, const Host& host) {
   const dem::Case& c = file.physics;
   const std::string key = bed_key(scene.setup, c.bed, scene.region);
   const std::string path = cache.empty() ? "" : (std::filesystem::path(cache) / ("bed-" + key.substr(0, 16) + ".h5")).string();
@@ -50,8 +50,9 @@ dem::SettledBed settled_bed(const CaseFile& file, const dem::Scene& scene, const
   };
   dem::SettledBed bed;
   try {
-    bed = dem::make_bed(scene.setup, c.bed, std::uint8_t(dem::material_index(c, c.bed.material)), scene.region, report,
-                        [] { return stop_requested(); });
+    host.compute([&] {
+      bed = dem::make_bed(scene.setup, c.bed, std::uint8_t(dem::material_index(c, c.bed.material)), scene.region, report, host.stop);
+    });
   } catch (const dem::BedInterrupted&) {
     throw Interrupted{};
   }

@@ -4,6 +4,7 @@
 
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/console.hpp"
+#include "apps/jamscope/host.hpp"
 #include "libdem/bed/bed.hpp"
 #include "libdem/scene/scene.hpp"
 
@@ -13,6 +14,6 @@ namespace jamscope {
 struct Interrupted {};
 
 // `cache` is the folder of settled beds, or empty.
-dem::SettledBed settled_bed(const CaseFile& file, const dem::Scene& scene, const std::string& cache, Console& console);
+dem::SettledBed settled_bed(const CaseFile& file, const dem::Scene& scene, const std::string& cache, Console& console, const Host& host = {});
 
 }  // namespace jamscope

@@ -37,10 +37,12 @@ std::uint64_t steps_in(double interval, double step) {
 // A run from its first to its last frame: libdem steps, every frame goes into the file and into the analysis.
 class Run {
  public:
-  Run(const SimulateOptions& options, const CaseFile& file, Console& console)
+  Run(const SimulateOptions& options, const CaseFile& file, Console& console, const Host& host, const OnFrame& on_frame)
       : options_(options),
         file_(file),
         console_(console),
+        host_(host),
+        on_frame_(on_frame),
         folder_(options.output),
         sha_(sha256_hex(file.text)),
         scene_(dem::make_scene(file.physics, file.walls)),
@@ -51,7 +53,7 @@ class Run {
   }
 
   void begin() {
-    dem::SettledBed bed = settled_bed(file_, scene_, options_.bed_cache, console_);
+    dem::SettledBed bed = settled_bed(file_, scene_, options_.bed_cache, console_, host_);
     writer_.emplace(jam::SnapshotWriter::create(snapshots(), info_));
     simulation_.emplace(scene_.setup, std::move(bed.state));
     begin_capture(std::nullopt);
@@ -69,7 +71,10 @@ class Run {
     begin_capture(checkpoint.state.step);
     info_ = writer_->info();
     const jam::SnapshotSource stored = jam::open_jamscope_file(snapshots());
-    for (std::size_t k = 0; k < stored.frames; ++k) pipeline_.add(stored.read(k));
+    for (std::size_t k = 0; k < stored.frames; ++k) {
+      const jam::Snapshot frame = stored.read(k);
+      host_.compute([&] { pipeline_.add(frame); });
+    }
     series_ = stored.series;
     pending_ = std::move(checkpoint.pending);
     jam::schema::append(series_, pending_);
@@ -77,7 +82,7 @@ class Run {
     console_.note(fmt::format("resumed at t = {:.6g} s, step {}, with {} frames", simulation_->time(), simulation_->step(), stored.frames));
   }
 
-  // Returns false where a stop signal ended it early.
+  // Returns false where the host or the one who sees the frames ended it early.
   bool advance() {
     const dem::Case& c = file_.physics;
     const double end = std::min(c.duration, options_.until.value_or(c.duration));
@@ -92,13 +97,13 @@ class Run {
     begin_ = Clock::now();
     std::uint64_t next_checkpoint = (simulation_->step() / checkpoint + 1) * checkpoint;
     while (simulation_->step() < last) {
-      if (stop_requested()) {
+      if (!go_on_ || host_.stop()) {
         save();
         return false;
       }
       const std::uint64_t step = simulation_->step();
       const std::uint64_t target = std::min({(step / window + 1) * window, (step / frame + 1) * frame, (step / fine + 1) * fine, last});
-      simulation_->advance(target - step);
+      host_.compute([&] { simulation_->advance(target - step); });
       if (capture_ && target % fine == 0) offer_to_capture(target - std::min(target, fine));
       if (target % window != 0 && target % frame != 0 && target != last) continue;
       const dem::Window row = simulation_->take_window();
@@ -154,6 +159,7 @@ class Run {
   }
 
   double time() const { return simulation_->time(); }
+  const jam::RunInfo& info() const { return info_; }
   std::string energy() const { return energy_text(info_, series_); }
 
  private:
@@ -161,12 +167,13 @@ class Run {
   std::string restart() const { return (folder_ / "run.restart.h5").string(); }
 
   void record_frame() {
-    const jam::Snapshot frame = snapshot(simulation_->view());
+    const auto frame = std::make_shared<const jam::Snapshot>(snapshot(simulation_->view()));
     append_open(pending_, simulation_->excursions());
     if (!pending_.excursion_count.empty()) append_open(series_, simulation_->excursions());
-    writer_->append(frame, pending_);
+    writer_->append(*frame, pending_);
     pending_ = jam::Series{};
-    pipeline_.add(frame);
+    host_.compute([&] { pipeline_.add(*frame); });
+    if (on_frame_ && !on_frame_(frame, pipeline_.frames() - 1, info_)) go_on_ = false;
   }
 
   void begin_capture(std::optional<std::uint64_t> last_step) {
@@ -208,6 +215,9 @@ class Run {
   const SimulateOptions& options_;
   const CaseFile& file_;
   Console& console_;
+  const Host& host_;
+  const OnFrame& on_frame_;
+  bool go_on_ = true;  // says the one who sees the frames
   std::filesystem::path folder_;
   std::string sha_;
   dem::Scene scene_;
@@ -226,14 +236,9 @@ class Run {
 
 }  // namespace
 
-int simulate(const SimulateOptions& options) {
-  Console console(stderr, options.log_format, options.quiet);
-  const CaseFile file = read_case_file(options.case_path, options.overrides);
-  for (const std::string& warning : file.warnings) console.warning(warning);
+SimulateResult run_simulation(const SimulateOptions& options, const CaseFile& file, Console& console, const Host& host, const OnFrame& on_frame) {
   omp_set_num_threads(std::max(options.threads, 1));
-  catch_stop_signals();
-
-  Run run(options, file, console);
+  Run run(options, file, console, host, on_frame);
   try {
     if (options.resume) {
       run.resume();
@@ -242,17 +247,28 @@ int simulate(const SimulateOptions& options) {
       run.begin();
     }
     const bool whole = run.advance();
-    const jam::Analysis analysis = run.write_results();
-    if (!options.quiet) {
-      if (!whole)
-        fmt::print("stopped at t = {:.6g} s; the same command with --resume goes on from there\n", run.time());
-      fmt::print("{}{}results in {}, report in {}\n", result_text(analysis), run.energy(), options.output,
-                 (std::filesystem::path(options.output) / "report.html").string());
-    }
-    return 0;
+    jam::Analysis analysis = run.write_results();
+    return {whole, run.time(), run.info(), std::move(analysis), run.energy()};
   } catch (const dem::PhysicsError&) {
     run.keep_what_there_is();
     throw;
+  }
+}
+
+int simulate(const SimulateOptions& options) {
+  Console console(stderr, options.log_format, options.quiet);
+  const CaseFile file = read_case_file(options.case_path, options.overrides);
+  for (const std::string& warning : file.warnings) console.warning(warning);
+  catch_stop_signals();
+  try {
+    const SimulateResult result = run_simulation(options, file, console);
+    if (!options.quiet) {
+      if (!result.whole)
+        fmt::print("stopped at t = {:.6g} s; the same command with --resume goes on from there\n", result.time);
+      fmt::print("{}{}results in {}, report in {}\n", result_text(result.analysis), result.energy, options.output,
+                 (std::filesystem::path(options.output) / "report.html").string());
+    }
+    return 0;
   } catch (const Interrupted&) {
     console.note("interrupted while the bed was settling; nothing was simulated yet");
     return 0;

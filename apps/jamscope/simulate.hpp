@@ -1,10 +1,15 @@
 // jamscope simulate: the run, its analysis in place, and its results.
 #pragma once
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/console.hpp"
+#include "apps/jamscope/host.hpp"
+#include "libjam/analysis.hpp"
 
 namespace jamscope {
 
@@ -25,5 +30,20 @@ struct SimulateOptions {
 // Returns the exit code: 0 when the end (or `until`, or a stop signal after its checkpoint) was reached. Throws like
 // the libraries, and UsageError.
 int simulate(const SimulateOptions& options);
+
+struct SimulateResult {
+  bool whole = false;  // the end or `until` was reached; else it was stopped, and `resume` goes on from there
+  double time = 0;     // s
+  jam::RunInfo info;
+  jam::Analysis analysis;
+  std::string energy;  // energy_text()
+};
+
+// Called with every frame that this run records, the first one too, as soon as it is in the file; false: stop, as a signal would.
+using OnFrame = std::function<bool(const std::shared_ptr<const jam::Snapshot>& frame, std::size_t number, const jam::RunInfo& info)>;
+
+// The same with its result files, but without signals, and silent on standard output. Throws like simulate(), and Interrupted where the host
+// stopped it while the bed settled.
+SimulateResult run_simulation(const SimulateOptions& options, const CaseFile& file, Console& console, const Host& host = {}, const OnFrame& on_frame = {});
 
 }  // namespace jamscope

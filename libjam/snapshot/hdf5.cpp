@@ -320,6 +320,8 @@ File::File(const std::filesystem::path& path, Mode mode) : path_(path.string()) 
       id_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, plan.get(), access.get());
       break;
     case Mode::read: {
+      // Where the file is open elsewhere in this process already (h5py beside the Python module), both must close it in the same way.
+      H5Pset_fclose_degree(access.get(), H5F_CLOSE_DEFAULT);
       // Metadata that a writer is just changing is read again, after 1, 2, 4, ... ns plus the system's latency; HDF5's
       // own limit of 100 attempts would wait for minutes where the file is damaged.
       H5Pset_metadata_read_attempts(access.get(), 16);
