@@ -11,12 +11,21 @@
 namespace jam {
 
 // Appends a number with the fewest digits that give the same number when they are read: at most 9 for a float, 17 for a
-// double. A float may also be read as a double and rounded: tried with all 2^31 - 2^23 finite ones that are not negative.
+// double. Our own importers, as most programs, read a float as a double and round that, and so round twice: of all 2^31 - 2^23
+// finite floats from 0 on (all were tried) one then becomes its neighbour, and gets 9 digits.
 template <class Number>
 requires std::floating_point<Number> || std::integral<Number>
 void append_number(std::string& text, Number value) {
   char buffer[32];
-  text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+  char* const end = buffer + sizeof buffer;
+  if constexpr (std::same_as<Number, float>) {
+    constexpr float rounded_twice = 7.038531e-26F;
+    if (value == rounded_twice || value == -rounded_twice) {
+      text.append(buffer, std::to_chars(buffer, end, double{value}, std::chars_format::general, 9).ptr);
+      return;
+    }
+  }
+  text.append(buffer, std::to_chars(buffer, end, value).ptr);
 }
 
 // Text with &, <, >, " as XML wants them; control characters, which XML cannot hold, become spaces.
