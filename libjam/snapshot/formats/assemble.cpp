@@ -301,6 +301,20 @@ void read_wall_list(const Table& table, const ImportMap& map, const RunInfo& inf
   const int feature = table.find("feature");
   known.damping = recorded.damping >= 0;
   known.birth_step = recorded.birth_step >= 0;
+  // What is known of one wall only is not known, in every frame, whether that wall is touched or not: frames of a run have
+  // the same quantities.
+  for (const ImportWall& entry : map.walls) {
+    const bool numbers = facet >= 0 || (mesh >= 0 && name < 0 && entry.mesh_count > 1);
+    const bool analytic = entry.wall.kind == "plane" || entry.wall.kind == "cylinder";
+    if (entry.recover || !entry.array.empty()) continue;
+    if (entry.wall.kind == "mesh") {
+      if (!numbers) known.facet = false;
+      if (!numbers || point < 0 || entry.wall.triangles.empty()) known.feature = false;
+    }
+    if (point < 0 && !analytic) known.point = false;
+    if (point < 0 && normal < 0 && !analytic) known.normal = false;
+    if (point < 0 && overlap < 0 && !analytic) known.overlap = false;
+  }
   const double length = map.units.length;
   for (std::size_t r = 0; r < table.rows(); ++r) {
     WallRecord record;
@@ -398,6 +412,9 @@ void read_wall_list(const Table& table, const ImportMap& map, const RunInfo& inf
 void read_wall_arrays(const Table& table, const ImportMap& map, const Bodies& bodies, std::vector<WallRecord>& records,
                       Known& known) {
   const int id = table.find("id");
+  for (const ImportWall& entry : map.walls) {
+    if (!entry.array.empty() && entry.wall.kind == "mesh") known.facet = known.feature = false;
+  }
   for (std::size_t r = 0; r < table.rows(); ++r) {
     int field = 1;
     for (std::size_t wall = 0; wall < map.walls.size(); ++wall) {
@@ -425,7 +442,6 @@ void read_wall_arrays(const Table& table, const ImportMap& map, const Bodies& bo
       record.normal_force = -force.dot(record.normal);
       record.tangential_force = force + record.normal_force * record.normal;
       record.overlap = radius - distance;
-      if (map.walls[wall].wall.kind == "mesh") known.facet = known.feature = false;
       records.push_back(record);
     }
   }

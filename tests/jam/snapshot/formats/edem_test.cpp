@@ -92,14 +92,16 @@ TEST(Edem, ErrorsNameFileAndLine) {
   const TemporaryFolder folder;
   const std::string particles = file_bytes(files()[1]), contacts = file_bytes(files()[2]);
   EXPECT_EQ(error_of(folder, particles, contacts), "");
+  std::string in_second_block = particles;
+  in_second_block.replace(particles.rfind("Particle ID"), 11, "ID");
   EXPECT_THAT(error_of(folder, replaced(particles, "0.01,0.0109,0.01\n", "0.01,0.0109\n"), contacts),
               HasSubstr("p.csv:9: the query 'Particle Position X' has 2 values, expected 3 as 'Particle ID'"));
   EXPECT_THAT(error_of(folder, replaced(particles, "0.0109", "nan"), contacts),
               HasSubstr("p.csv:9: a value of 'Particle Position X' is not a finite number"));
   EXPECT_THAT(error_of(folder, replaced(particles, "Q06", "Q05"), contacts), "");  // numbers of queries do not matter
-  EXPECT_THAT(error_of(folder, replaced(particles, "Position Y", "Position X"), contacts),
-              HasSubstr("p.csv:10: the query 'Particle Position X' is answered twice in this block"));
-  EXPECT_THAT(error_of(folder, replaced(particles, "Particle ID", "ID"), contacts), HasSubstr("p.csv:6: the block has no query 'Particle ID' for id"));
+  EXPECT_THAT(error_of(folder, replaced(particles, "Total Number of Particles", "Particle Position X"), contacts),
+              HasSubstr("p.csv:9: the query 'Particle Position X' is answered twice in this block"));
+  EXPECT_THAT(error_of(folder, in_second_block, contacts), HasSubstr("p.csv:17: the block has no query 'Particle ID' for id"));
   EXPECT_THAT(error_of(folder, particles, replaced(contacts, "1,2,25", "1,3,25")),
               HasSubstr("c.csv:3: the contact names particle 3, which is not among the 3 particles"));
   EXPECT_THAT(error_of(folder, particles, replaced(contacts, "1,2,25,", "1,2,")), HasSubstr("c.csv:3: the row has 3 values, expected 4"));
