@@ -46,10 +46,11 @@ class LammpsExporter final : public SnapshotExporter {
       const std::vector<TextColumn> cells = text_columns(columns, rows, Headings::lammps);
       table.agree(cells, rows, number, file.path().string());
       std::string& text = file.text();
-      text += "ITEM: TIMESTEP\n";
-      append_number(text, s.step);
-      text += "\nITEM: TIME\n";
+      // LAMMPS writes the time first, and its own reader takes no other order.
+      text += "ITEM: TIME\n";
       append_number(text, s.time);
+      text += "\nITEM: TIMESTEP\n";
+      append_number(text, s.step);
       text.append("\nITEM: NUMBER OF ").append(count_of).append("\n");
       append_number(text, rows);
       text.append("\n").append(box).append("ITEM: ").append(what).append(" ").append(keys);
