@@ -216,10 +216,14 @@ TEST_F(Export, WallNamesThatCsvCannotHoldAreReplacedAndMapped) {
 
 // Every way to cut a dump or a table short gives an error that names a file, or fewer frames; never anything else.
 TEST_F(Export, DumpsAndTablesThatAreCutShortGiveErrorsWithPlaces) {
+  RunInfo two_walls = sample::info();
+  two_walls.walls.resize(2);
+  Snapshot small = sample::frame(0, 3);
+  for (float& r : small.particles.radius) r += 1;
+  for (std::uint8_t& wall : small.pw.wall) wall = std::uint8_t(wall % 2);
+  small.walls.resize(2);
   for (const char* format : {"lammps", "csv"}) {
-    Snapshot small = sample::frame(0, 3);
-    for (float& r : small.particles.radius) r += 1;
-    std::vector<std::filesystem::path> files = write(format, {small});
+    const std::vector<std::filesystem::path> files = write(format, {small}, two_walls);
     for (const auto& file : files) {
       const std::string whole = bytes_of(file);
       std::size_t errors = 0;
