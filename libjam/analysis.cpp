@@ -59,29 +59,11 @@ FrameSummary summarize(const ContactGraph& graph, const std::vector<double>& com
   return row;
 }
 
-JamFrame jam_frame(const Snapshot& snapshot, const std::vector<JammedParticle>& jammed,
-                   const std::vector<Cluster>& clusters) {
-  const Particles& particles = snapshot.particles;
-  const bool has_velocity = present(particles.velocity, particles.size());
-  std::vector<ParticleId> bridging;
-  for (const Cluster& cluster : clusters) {
-    if (cluster.bridges) bridging.insert(bridging.end(), cluster.members.begin(), cluster.members.end());
-  }
-  std::sort(bridging.begin(), bridging.end());
-  JamFrame frame;
-  frame.time = snapshot.time;
-  for (const JammedParticle& p : jammed) {
-    JammedSample sample;
-    sample.particle = particles.id[p.row];
-    sample.position = particles.position[p.row];
-    sample.velocity =
-        has_velocity ? particles.velocity[p.row] : Vec3f::Constant(std::numeric_limits<float>::quiet_NaN());
-    sample.compressive_force = p.compressive_force;
-    sample.in_gap = p.in_gap;
-    sample.bridged = std::binary_search(bridging.begin(), bridging.end(), sample.particle);
-    frame.jammed.push_back(sample);
-  }
-  return frame;
+template <class... Parts>
+void note(Analysis& a, const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  a.notes.push_back(text.str());
 }
 
 bool any_blade_moves(const Snapshot& snapshot, const std::vector<Wall>& walls) {
@@ -99,12 +81,13 @@ std::size_t recovered(const WallContacts& contacts) {
                                                 [](std::uint8_t f) { return (f & contact_recovered) != 0; }));
 }
 
-BladePose blade_of(const Snapshot& snapshot, const std::vector<Wall>& walls) {
-  for (std::size_t w = 0; w < walls.size(); ++w) {
-    const WallState& state = snapshot.walls[w];
-    if (walls[w].role == WallRole::blade) return {snapshot.time, state.position, state.velocity, state.angular_velocity, state.orientation};
-  }
-  return {};
+void add_blade_load(FrameSummary& row, const Snapshot& snapshot, const RunInfo& info) {
+  row.blade_force = row.blade_torque = std::numeric_limits<double>::quiet_NaN();
+  const auto blade = std::find_if(info.walls.begin(), info.walls.end(), [](const Wall& w) { return w.role == WallRole::blade; });
+  if (!info.wall_loads_known || blade == info.walls.end()) return;
+  const WallState& state = snapshot.walls[std::size_t(blade - info.walls.begin())];
+  row.blade_force = state.force.z();
+  row.blade_torque = state.torque.z();
 }
 
 // The site of each cluster: of its member that carries the most.
@@ -159,10 +142,11 @@ ExaminedFrame Pipeline::examine(const Snapshot& snapshot, std::size_t frame) con
   found.summary = summarize(graph, network.compressive(), network.jammed(), network.clusters());
   found.clusters = network.clusters();
   for (Cluster& cluster : found.clusters) cluster.frame = static_cast<std::uint32_t>(frame);
-  found.jams = jam_frame(snapshot, network.jammed(), network.clusters());
+  found.blade = blade_of(snapshot, info_.walls);
+  add_blade_load(found.summary, snapshot, info_);
+  found.jams = jam_frame(graph, network.compressive(), network.jammed(), network.clusters(), info_, found.blade, analysis_.criteria);
   for (const RecordedMetric& recorded : analysis_.metrics) found.metrics.push_back(find_metric(recorded.name)->value(network));
   found.power = info_.wall_loads_known ? power_from_wall_loads(snapshot, info_.walls) : power_from_wall_contacts(snapshot, info_.walls);
-  found.blade = blade_of(snapshot, info_.walls);
   found.blade_moves = any_blade_moves(snapshot, info_.walls);
   found.recovered_contacts = recovered(snapshot.pw);
   found.ages_pp = ages(snapshot.pp.birth_step, snapshot.step);
@@ -188,13 +172,34 @@ const FrameSummary& Pipeline::add(ExaminedFrame frame) {
   return analysis_.frames.back();
 }
 
+// Jams as every step of the run saw them: of the particles that it watched, by the criteria as far as these particles tell.
+void Pipeline::follow_every_step(Analysis& a, const Series& series) const {
+  const Criteria& criteria = a.criteria;
+  Detector detector{.start_force = 0, .end_force = 0, .hold_off = criteria.hold_off, .shortest = criteria.shortest_jam};
+  if (criterion_of(criteria).unit == "N" && info_.watch_radius == 0) {
+    const double end_force = criteria.end_force.value_or(criteria.jam_force);
+    detector.start_force = criteria.jam_force;
+    if (end_force < info_.watch_force) note(a, "the run watched particles above ", info_.watch_force, " N: jams of every step end there, not at ", end_force, " N");
+    if (end_force > info_.watch_force) note(a, "jams of every step last until the force falls to ", info_.watch_force, " N, which the run watched");
+  } else {
+    const std::string watched = info_.watch_radius == 0 ? " N" : " N times the square of their radius over that of the mean";
+    if (criteria.criterion != "scaled_force" || info_.watch_radius == 0)
+      note(a, "jams of every step are those of particles above ", info_.watch_force, watched, ", which the run watched, not by the criterion ", criteria.criterion);
+  }
+  const Sites sites{.z_low = info_.gap.z_low, .z_high = info_.gap.z_high};
+  const Excursions stays = last_word(series.excursions);
+  const std::uint64_t first_step = a.frames.empty() ? 0 : a.frames.front().step;
+  const double begin = double(first_step) * info_.dt, end = series.time.back();
+  for (const JamStream stream : {JamStream::global, JamStream::particle, JamStream::site}) {
+    Analysis::StepStream& found = a.every_step.emplace_back();
+    found.jams = step_jams(stays, stream, detector, blade_, sites, info_.dt, info_.watch_stride, first_step);
+    found.statistics = jam_statistics(found.jams, begin, end);
+  }
+}
+
 Analysis Pipeline::finish(const Series& series) const {
   Analysis a = analysis_;
-  const auto note = [&a](const auto&... parts) {
-    std::ostringstream text;
-    (text << ... << parts);
-    a.notes.push_back(text.str());
-  };
+  const auto note = [&a](const auto&... parts) { jam::note(a, parts...); };
 
   a.sampling_interval = sampling_interval(jam_frames_);
   a.observed_time = static_cast<double>(jam_frames_.size()) * a.sampling_interval;
@@ -205,8 +210,9 @@ Analysis Pipeline::finish(const Series& series) const {
     note("frames are missing in ", missing, " places (more than 1.5 sampling intervals apart): events are cut there");
   }
 
-  a.events = global_events(jam_frames_, a.sampling_interval);
-  a.tracks = particle_tracks(jam_frames_, a.sampling_interval);
+  const SampledDetector sampled{a.sampling_interval, a.criteria.hold_off, a.criteria.shortest_jam};
+  a.events = global_events(jam_frames_, sampled);
+  a.tracks = particle_tracks(jam_frames_, sampled);
   a.lineage = lineage(a.clusters, cluster_sites(a.clusters, jam_frames_, blade_, {.z_low = info_.gap.z_low, .z_high = info_.gap.z_high}), jam_frames_,
                       a.sampling_interval);
   a.cluster_events = cluster_events(a.clusters, a.lineage, jam_frames_, a.sampling_interval);
@@ -229,27 +235,13 @@ Analysis Pipeline::finish(const Series& series) const {
     note(recovered_contacts_, " contacts with walls are not in the source and were recovered from force balances");
   }
 
-  if (info_.watch_force > 0 && info_.dt > 0 && !series.excursion_count.empty()) {
-    const double end_force = a.criteria.end_force.value_or(a.criteria.jam_force);
-    const bool by_force = criterion_of(a.criteria).unit == "N";
-    if (by_force && end_force < info_.watch_force) note("the run watched particles above ", info_.watch_force, " N: jams of every step end there, not at ", end_force, " N");
-    if (by_force && end_force > info_.watch_force) note("jams of every step last until the force falls to ", info_.watch_force, " N, which the run watched");
-    if (!by_force) note("jams of every step are those above the ", info_.watch_force, " N that the run watched, not by the criterion ", a.criteria.criterion);
-    const Detector detector{by_force ? a.criteria.jam_force : info_.watch_force, info_.watch_force, a.criteria.hold_off, a.criteria.shortest_jam};
-    const Sites sites{.z_low = info_.gap.z_low, .z_high = info_.gap.z_high};
-    const Excursions stays = last_word(series.excursions);
-    const std::uint64_t first_step = a.frames.empty() ? 0 : a.frames.front().step;
-    const double begin = double(first_step) * info_.dt, end = series.time.back();
-    for (const JamStream stream : {JamStream::global, JamStream::particle, JamStream::site}) {
-      Analysis::StepStream& found = a.every_step.emplace_back();
-      found.jams = step_jams(stays, stream, detector, blade_, sites, info_.dt, info_.watch_stride, first_step);
-      found.statistics = jam_statistics(found.jams, begin, end);
-    }
-  }
+  if (info_.watch_force > 0 && info_.dt > 0 && !series.excursion_count.empty()) follow_every_step(a, series);
   a.contact_life = contact_life(series, ages_pp_, ages_pw_, info_.dt);
   if (series_has_power(series, info_.walls)) {
     const double begin = a.frames.empty() ? 0.0 : a.frames.front().time;
     a.flow_energy = flow_energy_from_series(series, info_.walls, begin);
+    for (Analysis::StepStream& stream : a.every_step)
+      for (StepJam& jam : stream.jams) jam.share_of_flow_energy = jam.work / a.flow_energy.total;
     return a;
   }
   const bool power_known =

@@ -39,6 +39,7 @@ struct FrameSummary {
   std::uint32_t jammed_in_gap = 0;   // of those, how many sit in the gap between blade tip and vessel
   std::uint32_t bridges = 0;         // clusters that carry force from a blade to a vessel
   std::uint32_t largest_bridge = 0;  // particles in the largest of them
+  double blade_force = 0, blade_torque = 0;  // N along z, N m about z through the axis, on the first blade; NaN where loads of walls are not recorded
 };
 
 // A metric of libjam/metrics/metrics.hpp for each frame.
@@ -114,6 +115,8 @@ class Pipeline {
   Analysis finish(const Series& series) const;
 
  private:
+  void follow_every_step(Analysis& a, const Series& series) const;
+
   RunInfo info_;
   Analysis analysis_;
   std::vector<JamFrame> jam_frames_;

@@ -11,16 +11,6 @@
 
 namespace jam {
 
-template <class Visit>
-void columns_of(JammedSample*, Visit&& column) {
-  column("particle", &JammedSample::particle, "1", "id");
-  column("position", &JammedSample::position, "m", "centre");
-  column("velocity", &JammedSample::velocity, "m/s", "of the centre; NaN where the source has none");
-  column("compressive_force", &JammedSample::compressive_force, "N", "of the particle");
-  column("in_gap", &JammedSample::in_gap, "1", "in the gap between blade tip and vessel");
-  column("bridged", &JammedSample::bridged, "1", "belongs to a cluster from blade to vessel");
-}
-
 // What a frame has once, flat.
 struct PartialRow {
   double power = 0, blade_time = 0;
@@ -105,6 +95,9 @@ void write_partial(const std::filesystem::path& path, const PartialAnalysis& par
     write_table(file, "/partial/jammed",
                 write_parts(file, "/partial/rows", "jammed", "/partial/jammed", part.frames,
                             [](const ExaminedFrame& f) -> const std::vector<JammedSample>& { return f.jams.jammed; }));
+    write_table(file, "/partial/nearly",
+                write_parts(file, "/partial/rows", "nearly", "/partial/nearly", part.frames,
+                            [](const ExaminedFrame& f) -> const std::vector<JammedSample>& { return f.jams.nearly; }));
     const std::vector<std::string> names = metric_names(part.criteria);
     for (std::size_t m = 0; m < names.size(); ++m) {
       std::vector<double> values;
@@ -133,13 +126,14 @@ PartialAnalysis read_partial(const std::filesystem::path& path) {
   expect_rows(file, "/partial/rows", rows.size(), summaries.size());
   const auto clusters = read_parts(file, "/partial/rows", "cluster", read_with_members<Cluster>(file, "/partial/clusters"), rows.size());
   const auto jammed = read_parts(file, "/partial/rows", "jammed", read_table<JammedSample>(file, "/partial/jammed"), rows.size());
+  const auto nearly = read_parts(file, "/partial/rows", "nearly", read_table<JammedSample>(file, "/partial/nearly"), rows.size());
   part.frames.resize(rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     ExaminedFrame& f = part.frames[k];
     f.summary = summaries[k];
     take(f, rows[k]);
     f.clusters = clusters[k];
-    f.jams = {summaries[k].time, jammed[k]};
+    f.jams = {summaries[k].time, jammed[k], nearly[k]};
   }
   for (const std::string& name : *part.criteria.metrics) {
     const auto values = file.read<double>("/partial/metrics/" + name);

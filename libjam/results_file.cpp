@@ -26,6 +26,7 @@ void columns_of(JamEvent*, Visit&& column) {
   column("peak_particle", &JamEvent::peak_particle, "1", "id of the particle that carried it");
   column("peak_in_gap", &JamEvent::peak_in_gap, "1", "that particle sat in the gap then");
   column("bridged", &JamEvent::bridged, "1", "force went from a blade to a vessel in one of its frames or more");
+  column("least_gap", &JamEvent::least_gap, "m", "the smallest of the clusters that bridged; NaN where none did");
 }
 
 template <class Visit>
@@ -33,14 +34,6 @@ void columns_of(ClusterLink*, Visit&& column) {
   column("from", &ClusterLink::from, "1", "row of /clusters");
   column("to", &ClusterLink::to, "1", "row of /clusters, in the next frame");
   column("shared", &ClusterLink::shared, "1", "particles that both have; 0: a hand-over at the same site");
-}
-
-template <class Visit>
-void columns_of(Track::Point*, Visit&& column) {
-  column("frame", &Track::Point::frame, "1", "row of /frames");
-  column("position", &Track::Point::position, "m", "centre of the particle");
-  column("velocity", &Track::Point::velocity, "m/s", "of the centre; NaN where the source has none");
-  column("compressive_force", &Track::Point::compressive_force, "N", "of the particle");
 }
 
 template <class Visit>
@@ -91,6 +84,7 @@ void columns_of(StepJam*, Visit&& column) {
   column("site", &StepJam::site, "1", "sector + 2 layer of the blade, where that was");
   column("impulse", &StepJam::impulse, "N s", "integral of the members' compressive forces");
   column("work", &StepJam::work, "J", "that walls did on the members at their contacts");
+  column("share_of_flow_energy", &StepJam::share_of_flow_energy, "1", "that work over the blades' in the whole record");
   column("path", &StepJam::path, "m", "integral of the speed of the particle with the peak, in its stay");
   column("turned", &StepJam::turned, "rad", "integral of its angular speed");
   column("stays", &StepJam::stays, "1", "stays of particles above the force");
@@ -100,7 +94,7 @@ namespace {
 
 constexpr const char* format_name = "jamscope-analysis";
 using Version = std::array<std::uint32_t, 2>;
-constexpr Version schema_version{1, 2};  // a larger second number only adds items
+constexpr Version schema_version{2, 0};  // a larger second number only adds items
 
 std::vector<ContactLifeRow> rows_of(const std::vector<ContactLife>& life) {
   std::vector<ContactLifeRow> rows;
@@ -165,10 +159,10 @@ void write_criteria(h5::File& file, const Criteria& criteria) {
   }
   write_scalars(file, "/criteria", criteria);
   file.write_text("/criteria/criterion", criteria.criterion, "what jammed means");
-  file.write("/criteria/hold_off", std::vector<double>{criteria.hold_off}, "s", "pauses up to it do not end a jam seen at every step");
+  file.write("/criteria/hold_off", std::vector<double>{criteria.hold_off}, "s", "pauses up to it do not end a jam");
   file.write("/criteria/shortest_jam", std::vector<double>{criteria.shortest_jam}, "s", "shorter ones do not count");
   if (criteria.threshold) file.write("/criteria/threshold", std::vector<double>{*criteria.threshold}, "1", "of the criterion, in its unit");
-  if (criteria.end_force) file.write("/criteria/end_force", std::vector<double>{*criteria.end_force}, "N", "jams seen at every step last until it");
+  if (criteria.end_force) file.write("/criteria/end_force", std::vector<double>{*criteria.end_force}, "N", "a particle above it belongs to a jam that goes on");
   file.write("/criteria/survival_classes", criteria.survival_classes, "s", "upper bounds of the survival-time classes");
 }
 
@@ -182,10 +176,9 @@ Criteria read_criteria(const h5::File& file) {
   }
   criteria.measure = row->measure;
   read_scalars(file, "/criteria", criteria);
-  // Not in files of schema 1.1.
-  if (file.exists("/criteria/hold_off")) criteria.hold_off = read_one<double>(file, "/criteria/hold_off");
-  if (file.exists("/criteria/shortest_jam")) criteria.shortest_jam = read_one<double>(file, "/criteria/shortest_jam");
-  if (file.exists("/criteria/criterion")) criteria.criterion = file.read_text("/criteria/criterion");
+  criteria.hold_off = read_one<double>(file, "/criteria/hold_off");
+  criteria.shortest_jam = read_one<double>(file, "/criteria/shortest_jam");
+  criteria.criterion = file.read_text("/criteria/criterion");
   if (file.exists("/criteria/threshold")) criteria.threshold = read_one<double>(file, "/criteria/threshold");
   if (file.exists("/criteria/end_force")) criteria.end_force = read_one<double>(file, "/criteria/end_force");
   criteria.survival_classes = file.read<double>("/criteria/survival_classes");
@@ -201,7 +194,20 @@ void write_tracks(h5::File& file, const std::vector<Track>& tracks) {
   file.write("/tracks/particle", particle, "1", "id of the particle");
   const auto points = write_parts(file, "/tracks", "point", "/tracks/points", tracks,
                                   [](const Track& t) -> const std::vector<Track::Point>& { return t.points; });
-  write_table(file, "/tracks/points", points);
+  write_table<JammedSample>(file, "/tracks/points", points, [](const Track::Point& p) -> const JammedSample& { return p; });
+  std::vector<std::uint32_t> frame;
+  for (const Track::Point& point : points) frame.push_back(point.frame);
+  file.write("/tracks/points/frame", frame, "1", "row of /frames");
+}
+
+std::vector<Track::Point> read_points(const h5::File& file) {
+  const auto samples = read_table<JammedSample>(file, "/tracks/points");
+  const auto frame = file.read<std::uint32_t>("/tracks/points/frame");
+  if (frame.size() != samples.size()) file.fail("/tracks/points/frame", "expected " + std::to_string(samples.size()) + " rows");
+  std::vector<Track::Point> points;
+  points.reserve(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) points.push_back({samples[k], frame[k]});
+  return points;
 }
 
 std::vector<Track> read_tracks(const h5::File& file) {
@@ -209,7 +215,7 @@ std::vector<Track> read_tracks(const h5::File& file) {
   const auto particle = file.read<ParticleId>("/tracks/particle");
   if (particle.size() != events.size())
     file.fail("/tracks/particle", "expected " + std::to_string(events.size()) + " rows");
-  auto points = read_parts(file, "/tracks", "point", read_table<Track::Point>(file, "/tracks/points"), events.size());
+  auto points = read_parts(file, "/tracks", "point", read_points(file), events.size());
   std::vector<Track> tracks(events.size());
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     tracks[k] = {particle[k], events[k], std::move(points[k])};

@@ -30,6 +30,8 @@ void columns_of(FrameSummary*, Visit&& column) {
   column("jammed_in_gap", &FrameSummary::jammed_in_gap, "1", "of those, in the gap between blade tip and vessel");
   column("bridges", &FrameSummary::bridges, "1", "clusters that carry force from a blade to a vessel");
   column("largest_bridge", &FrameSummary::largest_bridge, "1", "particles in the largest bridge");
+  column("blade_force", &FrameSummary::blade_force, "N", "on the first blade, along z; NaN where loads of walls are not recorded");
+  column("blade_torque", &FrameSummary::blade_torque, "N m", "on the first blade, about z through its axis");
 }
 
 template <class Visit>
@@ -40,6 +42,22 @@ void columns_of(Cluster*, Visit&& column) {
   column("vessel_force", &Cluster::vessel_force, "N", "sum of the repulsive normal forces with vessel walls");
   column("largest_compressive_force", &Cluster::largest_compressive_force, "N", "over the members");
   column("in_gap", &Cluster::in_gap, "1", "members in the gap");
+  column("least_gap", &Cluster::least_gap, "m", "between a point where a blade and one where a vessel carries it; NaN where it does not bridge");
+}
+
+template <class Visit>
+void columns_of(JammedSample*, Visit&& column) {
+  column("particle", &JammedSample::particle, "1", "id");
+  column("position", &JammedSample::position, "m", "centre");
+  column("velocity", &JammedSample::velocity, "m/s", "of the centre; NaN where the source has none");
+  column("angular_velocity", &JammedSample::angular_velocity, "rad/s", "NaN where the source has none");
+  column("from_blade", &JammedSample::from_blade, "m", "centre in the blade's body frame, z along its axis");
+  column("speed_over_tip", &JammedSample::speed_over_tip, "1", "of the centre, over that of the blade's tip");
+  column("compressive_force", &JammedSample::compressive_force, "N", "of the particle");
+  column("pushed_by", &JammedSample::pushed_by, "1", "particles and walls that push it");
+  column("in_gap", &JammedSample::in_gap, "1", "in the gap between blade tip and vessel");
+  column("bridged", &JammedSample::bridged, "1", "belongs to a cluster from blade to vessel");
+  column("least_gap", &JammedSample::least_gap, "m", "of that cluster; NaN where there is none");
 }
 
 // HDF5 has no truth values: stored as 0 and 1.

@@ -11,10 +11,22 @@
 #include "apps/jamscope/frames_in_flight.hpp"
 #include "apps/jamscope/outputs.hpp"
 #include "libjam/errors.hpp"
+#include "libjam/jamming/jam_criteria.hpp"
 #include "libjam/partial_file.hpp"
 #include "libjam/snapshot/schema.hpp"
 
 namespace jamscope {
+
+namespace {
+
+// What a jam is, to follow the word.
+std::string rule_text(const jam::Criteria& criteria) {
+  const jam::JamCriterion& criterion = jam::criterion_of(criteria);
+  if (criterion.unit == "N") return fmt::format(" above {:g} N", criteria.jam_force);
+  return fmt::format(" by {} above {:g} E* R^2", criterion.name, jam::threshold_of(criteria));
+}
+
+}  // namespace
 
 std::string result_text(const jam::Analysis& a) {
   if (a.frames.empty()) return "no frames\n";
@@ -24,12 +36,13 @@ std::string result_text(const jam::Analysis& a) {
   std::string text =
       fmt::format("{} frames over {:.4g} s, {} grains; largest compressive force {:.4g} N\n", a.frames.size(),
                   a.frames.back().time - a.frames.front().time, a.frames.back().particles, largest);
+  const std::string rule = rule_text(a.criteria);
   if (a.events.empty()) {
-    text += fmt::format("no jams above {:g} N\n", a.criteria.jam_force);
+    text += fmt::format("no jams{}\n", rule);
   } else {
     text +=
-        fmt::format("{} jams above {:g} N: {:.3g} a second, {:.3g} ms long on average, {:.3g} % of the time\n",
-                    a.events.size(), a.criteria.jam_force, a.jam_frequency,
+        fmt::format("{} jams{}: {:.3g} a second, {:.3g} ms long on average, {:.3g} % of the time\n",
+                    a.events.size(), rule, a.jam_frequency,
                     1e3 * a.jammed_time / static_cast<double>(a.events.size()), 100 * a.jammed_time / a.observed_time);
     if (std::isfinite(a.jammed_in_gap_share))
       text += fmt::format("{:.3g} % of the jammed grains sat in the gap\n", 100 * a.jammed_in_gap_share);
@@ -38,7 +51,7 @@ std::string result_text(const jam::Analysis& a) {
     const jam::Analysis::StepStream& global = a.every_step[0];
     const jam::JamStatistics& s = global.statistics;
     if (global.jams.empty()) {
-      text += fmt::format("at every step: no jams above {:g} N\n", a.criteria.jam_force);
+      text += fmt::format("at every step: no jams{}\n", rule);
     } else {
       const std::string median = std::isfinite(s.median.value) ? fmt::format("half end within {:.3g} ms, ", 1e3 * s.median.value) : "";
       text += fmt::format("at every step: {} jams ({} of single grains), {:.3g} a second (95 %: {:.3g} to {:.3g}), {}the longest lasts {:.3g} ms\n",

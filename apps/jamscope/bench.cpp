@@ -119,7 +119,8 @@ int bench(const BenchOptions& options) {
   catch_stop_signals();
   try {
     dem::Scene scene = dem::make_scene(file.physics, file.walls);
-    scene.setup.watch_force = watch_force(file);
+    scene.setup.watch_force = watched(file).force;
+    scene.setup.watch_radius = watched(file).radius;
     if (options.uniform) scene.setup.levels = 0;
     dem::SettledBed bed = settled_bed(file, scene, options.bed_cache, console);
     const Measured m = measure(scene.setup, std::move(bed.state), options, console);

@@ -15,11 +15,13 @@
 #include "apps/jamscope/bench.hpp"
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/check.hpp"
+#include "apps/jamscope/claims.hpp"
 #include "apps/jamscope/compare.hpp"
 #include "apps/jamscope/checkpoint.hpp"
 #include "apps/jamscope/completion.hpp"
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/export.hpp"
+#include "apps/jamscope/follow.hpp"
 #include "apps/jamscope/inspect.hpp"
 #include "apps/jamscope/network_metrics.hpp"
 #include "apps/jamscope/simulate.hpp"
@@ -44,7 +46,9 @@ struct Options {
   AnalyzeOptions analyze;
   InspectOptions inspect;
   MetricsOptions metrics;
+  FollowOptions follow;
   CompareOptions compare;
+  ClaimsOptions claims;
   MergeOptions merge;
   BenchOptions bench;
   ExportOptions export_;
@@ -234,6 +238,24 @@ Command add_metrics(CLI::App& app, Options& o) {
   return [&o] { return network_metrics(o.metrics); };
 }
 
+Command add_follow(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("follow", "the way of some grains through a run, before, in and after their jams, as a table on standard output");
+  FollowOptions& m = o.follow;
+  add_input(c, m.input);
+  auto* const particles = c.add_option("--particles", m.particles, "ids, separated by commas")->delimiter(',')->allow_extra_args(false)->type_name("ID,...");
+  c.add_option("--jam", m.jam, "the members of this jam, counted from 0 as in the global rows of events.csv")->type_name("K")->excludes(particles);
+  c.add_option("--results", m.results, "folder with the analysis that has the jam; default: that of INPUT")->type_name("DIR");
+  c.add_option("--frames", m.frames, "from frame A to before frame B; default: all, or those around the jam")->type_name("A:B");
+  const std::map<std::string, FollowOf> parts{{"path", FollowOf::path}, {"contacts", FollowOf::contacts}};
+  c.add_option("--of", m.of, "where each grain is and what it does (path), or each of its contacts (contacts)")
+      ->transform(one_of(parts))
+      ->type_name("path|contacts");
+  add_overrides(c, m.overrides, "--set analysis.jam_force=\"5 N\"");
+  c.add_flag("-q,--quiet", m.quiet, "no progress");
+  c.footer("Examples:\n  jamscope follow run/run.h5 --jam 0 > path.csv\n  jamscope follow run/run.h5 --particles 17,204 --of contacts > contacts.csv");
+  return [&o] { return follow(o.follow); };
+}
+
 Command add_compare(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("compare", "jams of several runs side by side, and whether they differ");
   CompareOptions& m = o.compare;
@@ -246,6 +268,17 @@ Command add_compare(CLI::App& app, Options& o) {
   c.add_flag("--json", m.json, "for machines");
   c.footer("Example:\n  jamscope compare down up\n  jamscope compare seed1 seed2 seed3 --stream particle");
   return [&o] { return compare(o.compare); };
+}
+
+Command add_claims(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("claims", "measure statements about runs, each with its verdict, from the runs' summaries");
+  ClaimsOptions& m = o.claims;
+  c.add_option("RUN", m.runs, "folders with a summary.json, such files, or folders of either")->required()->type_name("");
+  c.add_option("--claims", m.claims, "TOML file of [claim.NAME] tables")->required()->type_name("FILE");
+  const std::map<std::string, ClaimsFormat> formats{{"text", ClaimsFormat::text}, {"markdown", ClaimsFormat::markdown}, {"json", ClaimsFormat::json}};
+  c.add_option("--format", m.format, "text (default), markdown or json")->transform(one_of(formats))->type_name("text|markdown|json");
+  c.footer(claim_measures() + "\nExample:\n  jamscope claims a_down b_down c_down --claims data/reference/paper_claims.toml");
+  return [&o] { return claims(o.claims); };
 }
 
 Command add_bench(CLI::App& app, Options& o) {
@@ -319,7 +352,7 @@ using AddCommand = Command (*)(CLI::App&, Options&);
 constexpr AddCommand commands[] = {
     add_check,
     add_simulate,
-    add_analyze,  add_merge, add_inspect, add_metrics, add_compare, add_bench,
+    add_analyze,  add_merge, add_inspect, add_metrics, add_follow, add_compare, add_claims, add_bench,
     add_export, add_completion,
 };
 

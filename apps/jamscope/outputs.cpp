@@ -25,6 +25,9 @@
 #include "libjam/jamming/jam_criteria.hpp"
 #include "libjam/results_file.hpp"
 #include "libjam/snapshot/schema.hpp"
+#include "libjam/statistics/blade_load.hpp"
+#include "libjam/statistics/jam_places.hpp"
+#include "libjam/statistics/lifetimes.hpp"
 
 namespace jamscope {
 namespace {
@@ -188,11 +191,66 @@ Json brackets_json(const jam::Analysis& a) {
   return {{"after_s", numbers(estimate.low)}, {"until_s", numbers(estimate.high)}, {"share_that_ends", numbers(estimate.mass)}};
 }
 
+Json load_json(const jam::LoadPeaks& p) {
+  return {{"every_step", number(p.every_step)}, {"windows", number(p.windows)}, {"frames", number(p.frames)},  {"filtered", number(p.filtered)},
+          {"median", number(p.median)}, {"windows_over_median", number(p.windows / p.median)}, {"windows_over_filtered", number(p.windows / p.filtered)},
+          {"trend", number(p.trend)}, {"medians", numbers(p.medians)}};
+}
+
+// What an instrument that holds the blade would feel.
+Json blade_json(const jam::RunInfo& info, const jam::Analysis& a, const jam::Series& series) {
+  std::vector<jam::FrameLoad> frames;
+  for (const jam::FrameSummary& frame : a.frames)
+    if (std::isfinite(frame.blade_force)) frames.push_back({frame.time, frame.blade_force, frame.blade_torque});
+  const jam::BladeLoad load = jam::blade_load(series, info.walls, frames);
+  return {{"filter_s", jam::BladeLoad::filter}, {"force_N", load_json(load.force)}, {"torque_Nm", load_json(load.torque)}};
+}
+
+// The flow energy at evenly spaced times, the power law that fits it best, and the share of it that was put in while something was jammed.
+Json flow_energy_json(const jam::Analysis& a, const jam::Series& series) {
+  const jam::FlowEnergy& flow = a.flow_energy;
+  Json json{{"source", flow.source}, {"total_J", number(flow.total)}};
+  if (flow.time.size() < 2) return json;
+  constexpr std::size_t points = 100;
+  std::vector<double> time, energy;
+  for (std::size_t k = 1; k <= points; ++k) {
+    const double t = flow.time.back() * double(k) / points;
+    const auto at = std::size_t(std::lower_bound(flow.time.begin(), flow.time.end(), t * (1 - 1e-12)) - flow.time.begin());
+    time.push_back(t);
+    energy.push_back(flow.energy[std::min(at, flow.energy.size() - 1)]);
+  }
+  json["curve"] = {{"time_s", numbers(time)}, {"energy_J", numbers(energy)}};
+  const jam::PowerLaw law = jam::power_law(flow.time, flow.energy);
+  json["power_law"] = {{"exponent", number(law.exponent)}, {"determination", number(law.determination)}};
+  if (flow.source == "series" && flow.time.size() == series.size() && jam::criterion_of(a.criteria).unit == "N" &&
+      jam::present(series.largest_compressive_force, series.size())) {
+    double jammed = 0;
+    for (std::size_t k = 0; k < series.size(); ++k)
+      if (double{series.largest_compressive_force[k]} > a.criteria.jam_force) jammed += flow.energy[k] - (k > 0 ? flow.energy[k - 1] : 0.0);
+    json["share_in_jammed_windows"] = number(jammed / flow.total);
+  }
+  return json;
+}
+
+// How long clusters that bridge blade and vessel keep their identity, half of them at most.
+double bridge_lifetime(const jam::Analysis& a) {
+  std::vector<jam::Lifetime> lifetimes;
+  for (const jam::JamEvent& e : a.cluster_events)
+    if (e.bridged && !e.open_at_start) lifetimes.push_back({e.survival_time, !e.open_at_end});
+  return lifetimes.empty() ? std::numeric_limits<double>::quiet_NaN() : jam::when_left(jam::kaplan_meier(lifetimes)).value;
+}
+
+Json places_json(const jam::JamPlaces& p) {
+  return {{"heights", p.heights}, {"even_p", number(p.even_p)},
+          {"speed_over_tip", {{"lower_quartile", number(p.lower_quartile)}, {"median", number(p.median)}, {"upper_quartile", number(p.upper_quartile)},
+                              {"slow", number(p.slow)}, {"between", number(p.between)}, {"fast", number(p.fast)}}}};
+}
+
 Json life_json(const jam::ContactLife::Kind& kind) {
   return {{"together", number(kind.together)}, {"ended", kind.ended}, {"alive", kind.alive}};
 }
 
-Json analysis_json(const jam::Analysis& a) {
+Json analysis_json(const jam::RunInfo& info, const jam::Analysis& a, const jam::Series& series) {
   Json json;
   Json bounds = Json::array();
   for (const double bound : a.criteria.survival_classes) bounds.push_back(bound);
@@ -217,9 +275,13 @@ Json analysis_json(const jam::Analysis& a) {
     const auto peak = std::max_element(a.frames.begin(), a.frames.end(), [](const auto& x, const auto& y) {
       return x.largest_compressive_force < y.largest_compressive_force;
     });
+    double mean = 0;
+    for (const jam::FrameSummary& frame : a.frames) mean += frame.mean_compressive_force / double(a.frames.size());
     json["largest_compressive_force"] = {{"force_N", number(peak->largest_compressive_force)},
                                          {"time_s", peak->time},
-                                         {"particle", peak->largest_particle}};
+                                         {"particle", peak->largest_particle},
+                                         {"over_mean", number(peak->largest_compressive_force / mean)}};
+    json["mean_compressive_force_N"] = number(mean);
   }
   const auto bridged = std::count_if(a.events.begin(), a.events.end(), [](const auto& e) { return e.bridged; });
   const auto censored =
@@ -238,7 +300,9 @@ Json analysis_json(const jam::Analysis& a) {
                   {"mean_survival_time_s", number(a.jammed_time / static_cast<double>(a.events.size()))},
                   {"jammed_in_gap_share", number(a.jammed_in_gap_share)},
                   {"particle_tracks", a.tracks.size()},
-                  {"clusters", a.clusters.size()}};
+                  {"clusters", a.clusters.size()},
+                  {"bridging_cluster_median_survival_s", number(bridge_lifetime(a))},
+                  {"places", places_json(jam::jam_places(a.tracks, info.gap))}};
   json["survival_classes"] = Json::array();
   for (const jam::SurvivalClass& c : a.survival_classes)
     json["survival_classes"].push_back({{"low_s", c.low},
@@ -247,7 +311,8 @@ Json analysis_json(const jam::Analysis& a) {
                                         {"frequency_per_s", number(c.frequency)},
                                         {"share_of_jam_time", number(c.share_of_jam_time)}});
   json["frames_by_jammed_particles"] = a.jammed_histogram;
-  json["flow_energy"] = {{"source", a.flow_energy.source}, {"total_J", number(a.flow_energy.total)}};
+  json["blade"] = blade_json(info, a, series);
+  json["flow_energy"] = flow_energy_json(a, series);
   for (std::size_t s = 0; s < a.every_step.size(); ++s)
     json["jams_at_every_step"][std::string(jam::jam_stream_names[s])] = step_stream_json(a.every_step[s], a.flow_energy.total);
   if (!a.contact_life.empty()) {
@@ -334,7 +399,7 @@ std::string energy_text(const jam::RunInfo& info, const jam::Series& series) {
 
 std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
                          const RunFacts& facts) {
-  Json json{{"run", run_json(info, facts)}, {"analysis", analysis_json(analysis)}};
+  Json json{{"run", run_json(info, facts)}, {"analysis", analysis_json(info, analysis, series)}};
   json["analysis"]["jams_above"] = jams_above_json(analysis, series);
   if (!series.energy.residual.empty()) json["energy"] = energy_json(info, series);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -47,6 +47,7 @@ class Run {
         info_(run_info(file, scene_, options.command_line)),
         pipeline_(info_, file.criteria) {
     scene_.setup.watch_force = info_.watch_force;
+    scene_.setup.watch_radius = info_.watch_radius;
   }
 
   void begin() {

@@ -134,11 +134,12 @@ std::string wall_kind(const dem::WallShape& shape) {
   return info.kind;
 }
 
-double watch_force(const CaseFile& file) {
+Watched watched(const CaseFile& file) {
   const jam::Criteria& criteria = file.criteria;
-  if (jam::criterion_of(criteria).unit == "N") return criteria.end_force.value_or(criteria.jam_force);
+  if (jam::criterion_of(criteria).unit == "N") return {criteria.end_force.value_or(criteria.jam_force), 0};
   const dem::Material& m = file.physics.materials[dem::material_index(file.physics, file.physics.bed.material)];
-  return jam::threshold_of(criteria) * jam::hertz_scale({m.name, m.density, m.young, m.poisson}, file.physics.bed.mean_diameter / 2);
+  const double radius = file.physics.bed.mean_diameter / 2;
+  return {jam::threshold_of(criteria) * jam::hertz_scale({m.name, m.density, m.young, m.poisson}, radius), radius};
 }
 
 jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::vector<std::string>& argv) {
@@ -162,7 +163,8 @@ jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::
   }
   for (std::size_t w = 0; w < setup.walls.size(); ++w)
     info.walls.push_back(wall_info(setup.walls[w], role_of(scene.roles[w]), setup.materials[setup.walls[w].material].name));
-  info.watch_force = watch_force(file);
+  info.watch_force = watched(file).force;
+  info.watch_radius = watched(file).radius;
   info.watch_stride = std::uint64_t{1} << file.physics.levels;
   if (const auto& gap = scene.gap) info.gap = {gap->tip_radius, gap->vessel_radius, gap->blade_low, gap->blade_high};
   return info;

@@ -10,8 +10,12 @@ namespace jamscope {
 // "plane", "cylinder", "cone", "disc", "spheres" or "mesh", as in a snapshot file.
 std::string wall_kind(const dem::WallShape& shape);
 
-// N, above which a run follows its grains from step to step: where a jam by force ends, else the criterion's threshold for a grain of mean size.
-double watch_force(const CaseFile& file);
+// Above which force a run follows its grains from step to step (dem::Setup::watch_force): where a jam by force ends, else the criterion's
+// threshold for a grain of mean size, and for others as the square of their radius.
+struct Watched {
+  double force = 0, radius = 0;  // N, m
+};
+Watched watched(const CaseFile& file);
 
 // Everything a snapshot file says once about its run.
 jam::RunInfo run_info(const CaseFile& file, const dem::Scene& scene, const std::vector<std::string>& argv);

@@ -7,7 +7,7 @@
 
 namespace dem {
 
-// An uninterrupted stay of a grain above Setup::watch_force. It is looked at whenever all contacts are evaluated: every step, or every
+// An uninterrupted stay of a grain above its limit (Setup::watch_force). It is looked at whenever all contacts are evaluated: every step, or every
 // 2^levels steps where contacts step at their own rate; sums and integrals are over these instants, each for the time to the next.
 struct Excursion {
   std::uint32_t id = 0;                                      // of the grain

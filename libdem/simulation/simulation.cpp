@@ -76,6 +76,7 @@ struct Simulation::Engine {
     std::vector<WatchedGrain> above;
   };
   std::vector<Pressed> pressed;
+  double least_watched = 0;  // N, the lowest of the grains' limits
   std::vector<WatchedGrain> above;  // of all chunks
   ExcursionTracker excursions;
   std::vector<double> closing_jolt;  // [chunks] m/s, by how much two bodies' speeds may change until then, when all were due last
@@ -98,6 +99,7 @@ struct Simulation::Engine {
     last_power.assign(setup.walls.size(), 0.0);
     mean_radius = n ? std::accumulate(radius.begin(), radius.end(), 0.0) / double(n) : 1.0;
     skin = 0.1 * mean_radius;
+    least_watched = watched_force(n ? *std::min_element(radius.begin(), radius.end()) : 0.0);
     for (const Wall& w : setup.walls) wall_speed = std::max(wall_speed, largest_speed(w));
     move_walls();
 
@@ -226,6 +228,12 @@ struct Simulation::Engine {
     }
     for_each_due_wall_chunk([&](const WallContacts::Chunk& chunk) { window.ended_wall_pairs += chunk.ended; });
     if (all_due()) follow_watched();
+  }
+
+  // N, the limit of a grain (Setup::watch_force).
+  double watched_force(double radius) const {
+    const double scale = setup.watch_radius > 0 ? radius / setup.watch_radius : 1.0;
+    return setup.watch_force * scale * scale;
   }
 
   void follow_watched() {
@@ -401,9 +409,10 @@ struct Simulation::Engine {
       grains.forces[i].force += weight;
       const double force = grains.forces[i].force[3];
       now.largest = std::max(now.largest, force);
-      if (force > setup.watch_force) [[unlikely]] {
+      if (force > least_watched) [[unlikely]] {
         const GrainRow& grain = grains.rows[i];
-        now.above.push_back({std::uint32_t(i), grains.id[i], force, 0, grain.velocity().norm(), grain.angular_velocity().norm(), grain.position()});
+        if (force > watched_force(grain.radius()))
+          now.above.push_back({std::uint32_t(i), grains.id[i], force, 0, grain.velocity().norm(), grain.angular_velocity().norm(), grain.position()});
       }
       if (move) kick_and_drift<Levels>(i, motion);
     }

@@ -37,7 +37,10 @@ struct Setup {
   // period, a falling grain falls with less than gravity, and forces in balance are left alone (Cundall, Proc. Symp. Rock
   // Mechanics, 1987; here along the force and not axis by axis, so that it does not depend on the axes).
   double local_damping = 0;
-  double watch_force = 20;    // N, grains under a larger compressive force are counted and followed (excursions.hpp)
+  // Grains under a compressive force above their limit are counted and followed (excursions.hpp): watch_force, N, the same for all; or
+  // that of a grain of radius watch_radius, m, and of others as the square of their radius, as the forces of equal indentations are.
+  double watch_force = 20;
+  double watch_radius = 0;
   LawChoice law;              // parts of the contact law (libdem/contact/laws.hpp)
   bool wall_curvature = false;  // the curvature of walls enters the effective radius (on_curved_wall); else they count as flat
   bool keep_ledger = false;   // book where the energy goes (class Ledger); slower. Not with local damping
@@ -165,7 +168,7 @@ struct Window {
   // N, sum over a grain's contacts of the repulsive normal force. At steps at which not all contacts are evaluated (levels), over
   // those that are: the stiff and the fast ones.
   double largest_compressive_force = 0;
-  std::uint32_t most_watched = 0;  // largest number of grains above watch_force in a step at which all contacts are evaluated
+  std::uint32_t most_watched = 0;  // largest number of grains above their watched force in a step at which all contacts are evaluated
   double largest_overlap = 0;                   // 1, overlap over radius
   double kinetic_energy = 0;                    // J, of last_step
   EndedContacts ended_pairs, ended_wall_pairs;  // contacts that ended; with a wall: gave way to no other

@@ -1,9 +1,10 @@
 // Jams in time.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
-#include "libjam/snapshot/snapshot.hpp"
+#include "libjam/events/jam_frame.hpp"
 
 namespace jam {
 
@@ -15,7 +16,7 @@ namespace jam {
 // - d/D. The bracket of an event that the record cuts off has no upper end.
 struct JamEvent {
   std::uint32_t first_frame = 0, last_frame = 0;  // inclusive
-  std::uint32_t samples = 0;                      // n
+  std::uint32_t samples = 0;                      // n, from first to last; with pauses that Criteria::hold_off allows
   double start = 0, end = 0;                      // s, times of the first and last sample above the threshold
   double survival_time = 0;                       // s, n D
   double shortest = 0, longest = 0;               // s, the bracket; longest = infinity where open
@@ -25,6 +26,7 @@ struct JamEvent {
   ParticleId peak_particle = 0;
   bool peak_in_gap = false;
   bool bridged = false;             // a bridging cluster existed in at least one of its frames
+  double least_gap = std::numeric_limits<double>::quiet_NaN();  // m, the smallest Cluster::least_gap of its frames; NaN where never bridged
   std::vector<ParticleId> members;  // every particle jammed at some time during the event, ascending
 };
 
@@ -33,12 +35,10 @@ struct JamEvent {
 struct Track {
   ParticleId particle = 0;
   JamEvent event;  // members = {particle}
-  struct Point {
-    std::uint32_t frame;
-    Vec3f position, velocity;  // m, m/s (velocity NaN where the source has none)
-    float compressive_force;   // N
+  struct Point : JammedSample {
+    std::uint32_t frame = 0;
   };
-  std::vector<Point> points;  // its frames above the threshold
+  std::vector<Point> points;  // its frames above the threshold, and those above Criteria::end_force around them
 };
 
 }  // namespace jam

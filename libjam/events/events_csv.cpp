@@ -29,6 +29,7 @@ void append_row(std::string& csv, std::string_view stream, const JamEvent& e) {
        {printed(e.start), printed(e.end), printed(e.samples), printed(e.survival_time), printed(e.shortest),
         printed(e.longest), printed(int{e.open_at_start}), printed(int{e.open_at_end}), printed(e.peak_force),
         printed(e.peak_time), printed(e.peak_particle), printed(int{e.peak_in_gap}), printed(int{e.bridged}),
+        printed(e.least_gap),
         joined(e.members)}) {
     csv += ',';
     csv += cell;
@@ -41,7 +42,7 @@ void append_row(std::string& csv, std::string_view stream, const JamEvent& e) {
 std::string events_csv(std::span<const JamEvent> events, std::span<const JamEvent> clusters, std::span<const Track> tracks) {
   std::string csv =
       "stream,start_s,end_s,samples,survival_time_s,shortest_s,longest_s,open_at_start,open_at_end,peak_force_N,"
-      "peak_time_s,peak_particle,peak_in_gap,bridged,members\n";
+      "peak_time_s,peak_particle,peak_in_gap,bridged,least_gap_m,members\n";
   for (const JamEvent& event : events) append_row(csv, "global", event);
   for (const JamEvent& event : clusters) append_row(csv, "cluster", event);
   for (const Track& track : tracks) append_row(csv, "particle", track.event);
@@ -49,8 +50,8 @@ std::string events_csv(std::span<const JamEvent> events, std::span<const JamEven
 }
 
 std::string_view step_jams_header() {
-  return "stream,start_s,end_s,duration_s,open_at_start,open_at_end,peak_force_N,peak_time_s,peak_particle,site,impulse_Ns,work_J,path_m,"
-         "turned_rad,stays,members\n";
+  return "stream,start_s,end_s,duration_s,open_at_start,open_at_end,peak_force_N,peak_time_s,peak_particle,site,impulse_Ns,work_J,"
+         "share_of_flow_energy,path_m,turned_rad,stays,members\n";
 }
 
 std::string step_jams_rows(JamStream stream, std::span<const StepJam> jams) {
@@ -59,7 +60,7 @@ std::string step_jams_rows(JamStream stream, std::span<const StepJam> jams) {
     csv += jam_stream_names[std::size_t(stream)];
     for (const std::string& cell :
          {printed(j.start), printed(j.end), printed(j.duration), printed(int{j.open_at_start}), printed(int{j.open_at_end}), printed(j.peak_force),
-          printed(j.peak_time), printed(j.peak_particle), printed(j.site), printed(j.impulse), printed(j.work), printed(j.path), printed(j.turned),
+          printed(j.peak_time), printed(j.peak_particle), printed(j.site), printed(j.impulse), printed(j.work), printed(j.share_of_flow_energy), printed(j.path), printed(j.turned),
           printed(j.stays), joined(j.members)}) {
       csv += ',';
       csv += cell;

@@ -9,15 +9,6 @@
 #include "libjam/snapshot/schema.hpp"
 
 namespace jam {
-Vec3 in_blade_frame(std::span<const BladePose> poses, double time, const Vec3& position) {
-  if (poses.empty()) return position;
-  const auto after = std::upper_bound(poses.begin(), poses.end(), time, [](double t, const BladePose& p) { return t < p.time; });
-  const BladePose& pose = after == poses.begin() ? poses.front() : *(after - 1);
-  const double since = time - pose.time, angle = pose.angular_velocity.norm() * since;
-  Eigen::Quaterniond orientation = pose.orientation;
-  if (angle != 0) orientation = Eigen::Quaterniond(Eigen::AngleAxisd(angle, pose.angular_velocity.normalized())) * orientation;
-  return orientation.conjugate() * (position - (pose.position + since * pose.velocity));
-}
 
 std::uint32_t Sites::of(const Vec3& x) const {
   const double turn = std::atan2(x.y(), x.x()) / (2 * std::numbers::pi) + 0.5 / sectors;

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libjam/events/blade_pose.hpp"
 #include "libjam/snapshot/snapshot.hpp"
 
 namespace jam {
@@ -23,16 +24,6 @@ struct Detector {
   double start_force = 20, end_force = 20;  // N, start_force >= end_force
   double hold_off = 0, shortest = 0;        // s
 };
-
-// The blade at a time, from which it turns and moves on steadily.
-struct BladePose {
-  double time = 0;  // s
-  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-};
-// m, in the frame of the blade at that time. Poses ascend by time; the last one before the time counts, or the first of all. Without poses
-// the position as it is.
-Vec3 in_blade_frame(std::span<const BladePose> poses, double time, const Vec3& position);
 
 // Sectors around the blade's axis, the first centred on its x axis, and layers between z_low and z_high, the outer ones open.
 struct Sites {
@@ -49,6 +40,7 @@ struct StepJam {
   ParticleId peak_particle = 0;
   std::uint32_t site = 0;                           // of the peak
   double impulse = 0, work = 0;                     // N s, J, sums over its stays
+  double share_of_flow_energy = 0;                  // work over that of the blades in the whole record; NaN where it is not known
   double path = 0, turned = 0;                      // m, rad, of the stay with the peak
   std::uint32_t stays = 0;
   std::vector<ParticleId> members;                  // ascending, each once

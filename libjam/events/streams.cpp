@@ -1,7 +1,9 @@
 #include "libjam/events/streams.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
 
 namespace jam {
 
@@ -23,6 +25,7 @@ void extend_event(JamEvent& event, std::span<const JamFrame> frames, std::uint32
     event.peak_particle = sample.particle;
     event.peak_in_gap = sample.in_gap;
   }
+  event.least_gap = std::fmin(event.least_gap, sample.least_gap);
 }
 
 void close_event(JamEvent& event, std::span<const JamFrame> frames, double interval) {
@@ -35,54 +38,72 @@ void close_event(JamEvent& event, std::span<const JamFrame> frames, double inter
                                                            : (event.samples + 1) * interval;
 }
 
-std::vector<JamEvent> global_events(std::span<const JamFrame> frames, double interval) {
+namespace {
+
+// Does an event whose last frame is `last` reach frame k?
+bool goes_on(std::span<const JamFrame> frames, std::size_t last, std::size_t k, const SampledDetector& detector) {
+  if (double(k - last - 1) * detector.interval > detector.hold_off * (1 + 1e-9)) return false;
+  for (std::size_t next = last + 1; next <= k; ++next)
+    if (gap_before(frames, next, detector.interval)) return false;
+  return true;
+}
+
+void close(JamEvent& event, std::span<const JamFrame> frames, const SampledDetector& detector) {
+  close_event(event, frames, detector.interval);
+  std::sort(event.members.begin(), event.members.end());
+  event.members.erase(std::unique(event.members.begin(), event.members.end()), event.members.end());
+}
+
+bool counts(const JamEvent& event, const SampledDetector& detector) {
+  return !event.members.empty() && event.survival_time >= detector.shortest * (1 - 1e-9);
+}
+
+}  // namespace
+
+std::vector<JamEvent> global_events(std::span<const JamFrame> frames, const SampledDetector& detector) {
   std::vector<JamEvent> events;
-  bool open = false;
   for (std::uint32_t k = 0; k < frames.size(); ++k) {
-    const bool jammed = !frames[k].jammed.empty();
-    const bool continues = jammed && open && !gap_before(frames, k, interval);
-    if (jammed && !continues) events.push_back(begin_event(frames, k, interval));
-    for (const JammedSample& sample : frames[k].jammed) {
+    const JamFrame& frame = frames[k];
+    if (frame.jammed.empty() && frame.nearly.empty()) continue;
+    if (events.empty() || !goes_on(frames, events.back().last_frame, k, detector)) events.push_back(begin_event(frames, k, detector.interval));
+    for (const JammedSample& sample : frame.jammed) {
       extend_event(events.back(), frames, k, sample);
       events.back().members.push_back(sample.particle);
     }
-    open = jammed;
+    for (const JammedSample& sample : frame.nearly) extend_event(events.back(), frames, k, sample);
   }
-  for (JamEvent& event : events) {
-    close_event(event, frames, interval);
-    std::sort(event.members.begin(), event.members.end());
-    event.members.erase(std::unique(event.members.begin(), event.members.end()), event.members.end());
-  }
+  for (JamEvent& event : events) close(event, frames, detector);
+  std::erase_if(events, [&](const JamEvent& event) { return !counts(event, detector); });
   return events;
 }
 
-std::vector<Track> particle_tracks(std::span<const JamFrame> frames, double interval) {
+std::vector<Track> particle_tracks(std::span<const JamFrame> frames, const SampledDetector& detector) {
   std::vector<Track> tracks;
-  // Tracks that reached the previous frame, as (particle, index into tracks), ascending by particle.
-  std::vector<std::pair<ParticleId, std::size_t>> open, still_open;
-  for (std::uint32_t k = 0; k < frames.size(); ++k) {
-    if (k > 0 && gap_before(frames, k, interval)) open.clear();
-    still_open.clear();
-    auto previous = open.begin();
-    for (const JammedSample& sample : frames[k].jammed) {
-      while (previous != open.end() && previous->first < sample.particle) ++previous;
-      const bool continues = previous != open.end() && previous->first == sample.particle;
-      const std::size_t index = continues ? previous->second : tracks.size();
-      if (!continues) {
-        Track track;
-        track.particle = sample.particle;
-        track.event = begin_event(frames, k, interval);
-        track.event.members = {sample.particle};
-        tracks.push_back(std::move(track));
-      }
-      extend_event(tracks[index].event, frames, k, sample);
-      tracks[index].points.push_back(
-          {k, sample.position, sample.velocity, static_cast<float>(sample.compressive_force)});
-      still_open.emplace_back(sample.particle, index);
+  std::map<ParticleId, std::size_t> latest;  // of each particle its last track
+  // Returns the particle's track of frame k.
+  const auto extend = [&](std::uint32_t k, const JammedSample& sample) -> Track& {
+    const auto [place, fresh] = latest.try_emplace(sample.particle, tracks.size());
+    if (fresh || !goes_on(frames, tracks[place->second].event.last_frame, k, detector)) {
+      place->second = tracks.size();
+      Track& track = tracks.emplace_back();
+      track.particle = sample.particle;
+      track.event = begin_event(frames, k, detector.interval);
     }
-    std::swap(open, still_open);
+    Track& track = tracks[place->second];
+    extend_event(track.event, frames, k, sample);
+    track.points.push_back({sample, k});
+    return track;
+  };
+  for (std::uint32_t k = 0; k < frames.size(); ++k) {
+    for (const JammedSample& sample : frames[k].jammed) extend(k, sample).event.members = {sample.particle};
+    for (const JammedSample& sample : frames[k].nearly) extend(k, sample);
   }
-  for (Track& track : tracks) close_event(track.event, frames, interval);
+  for (Track& track : tracks) close(track.event, frames, detector);
+  std::erase_if(tracks, [&](const Track& track) { return !counts(track.event, detector); });
+  // Particles that only nearly jammed in a track's first frame came after the jammed ones.
+  std::stable_sort(tracks.begin(), tracks.end(), [](const Track& a, const Track& b) {
+    return std::pair(a.event.first_frame, a.particle) < std::pair(b.event.first_frame, b.particle);
+  });
   return tracks;
 }
 

@@ -9,12 +9,19 @@
 
 namespace jam {
 
-// The paper's stream: maximal runs of consecutive frames in which any particle is jammed, in order of time. `interval`
-// is D.
-std::vector<JamEvent> global_events(std::span<const JamFrame> frames, double interval);
+// The same rule as for jams of every step (every_step.hpp): an event is a run of frames in which its stream is jammed or nearly so, over pauses of up
+// to `hold_off`; it counts if it is jammed in one of them and survives `shortest`. With end_force = jam_force and no hold-off this is the paper's.
+struct SampledDetector {
+  double interval = 0;  // s, D
+  double hold_off = 0;  // s, the longest pause that does not end it
+  double shortest = 0;  // s, events of a shorter survival time do not count
+};
+
+// The paper's stream: maximal runs of frames in which any particle is jammed, in order of time.
+std::vector<JamEvent> global_events(std::span<const JamFrame> frames, const SampledDetector& detector);
 
 // The same for each particle by itself, by first frame, then particle id.
-std::vector<Track> particle_tracks(std::span<const JamFrame> frames, double interval);
+std::vector<Track> particle_tracks(std::span<const JamFrame> frames, const SampledDetector& detector);
 
 // What events of any stream are put together from. One that begins in frame k:
 JamEvent begin_event(std::span<const JamFrame> frames, std::uint32_t k, double interval);

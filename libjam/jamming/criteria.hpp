@@ -21,8 +21,8 @@ struct Criteria {
   std::string criterion = "compressive_force";
   std::optional<double> threshold = std::nullopt;
   double jam_force = 20.0;  // N; a particle is jammed when its compressive force is larger (paper, section 3.2)
-  // Jams seen at every step (libjam/events/every_step.hpp) last until the force falls to end_force, N; nothing: jam_force. Pauses of up to
-  // hold_off, s, do not end them, and those shorter than shortest_jam, s, do not count.
+  // Jams last from where the force rises above end_force, N, to where it falls back to it, if it passes jam_force between; nothing: jam_force.
+  // Pauses of up to hold_off, s, do not end them, and those shorter than shortest_jam, s, do not count.
   std::optional<double> end_force = std::nullopt;
   double hold_off = 0, shortest_jam = 0;
   // A contact belongs to a jam's load path when its normal force exceeds this share of jam_force.

@@ -62,6 +62,7 @@ inline constexpr Item table[] = {
     {"/@dt", T::f8, 1, attribute, optional, "s", "time step of the source"},
     {"/run@wall_loads_known", T::u1, 1, attribute, required, "1", "1 if the walls' force and torque were recorded"},
     {"/run@watch_force", T::f8, 1, attribute, optional, "N", "/excursions are stays of particles above it"},
+    {"/run@watch_radius", T::f8, 1, attribute, optional, "m", "watch_force is for this radius and goes with its square; absent: the same for all"},
     {"/run@watch_stride", T::u8, 1, attribute, optional, "1", "steps between two looks at the particles; absent: 1"},
     {"/run@gap_tip_radius", T::f8, 1, attribute, optional, "m", "largest distance of the blade from its axis"},
     {"/run@gap_vessel_radius", T::f8, 1, attribute, optional, "m", "inner radius of the vessel"},

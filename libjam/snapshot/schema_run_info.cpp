@@ -150,6 +150,7 @@ void write_run_info(h5::File& file, const RunInfo& info) {
   if (info.watch_force > 0) {
     set(file, column<double>("/run@watch_force"), info.watch_force);
     set(file, column<std::uint64_t>("/run@watch_stride"), info.watch_stride);
+    if (info.watch_radius > 0) set(file, column<double>("/run@watch_radius"), info.watch_radius);
   }
   const Gap& gap = info.gap;
   if (gap.tip_radius != 0 || gap.vessel_radius != 0 || gap.z_low != 0 || gap.z_high != 0) {
@@ -201,6 +202,7 @@ RunInfo read_run_info(const h5::File& file) {
   info.wall_loads_known = get<std::uint8_t>(file, column<std::uint8_t>("/run@wall_loads_known")) != 0;
   get_optional(file, column<double>("/run@watch_force"), info.watch_force);
   get_optional(file, column<std::uint64_t>("/run@watch_stride"), info.watch_stride);
+  get_optional(file, column<double>("/run@watch_radius"), info.watch_radius);
   visit_gap([&](const Item& i, double Gap::*member) { get_optional(file, i, info.gap.*member); });
   if (file.exists("/case/toml")) info.case_toml = file.read_text("/case/toml");
   if (file.exists("/case/argv")) info.argv = file.read_texts("/case/argv");

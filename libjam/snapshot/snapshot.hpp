@@ -152,6 +152,7 @@ struct RunInfo {
   std::vector<Wall> walls;
   Gap gap;
   double watch_force = 0;  // N, excursions are stays above it; 0 where there are none
+  double watch_radius = 0;  // m; 0: that is the same for all particles; else it is for this radius, and goes with the square of the radius
   std::uint64_t watch_stride = 1;  // steps between two looks at the particles
   bool wall_loads_known = true;  // WallState::force and torque were recorded, not left at zero
 };

@@ -195,6 +195,7 @@ void validate(const RunInfo& info, const std::string& place) {
   check_finite(info.gravity, "gravity", place);
   check_not_negative(info.dt, "dt", place);
   check_not_negative(info.watch_force, "watch_force", place);
+  check_not_negative(info.watch_radius, "watch_radius", place);
   check_not_negative(info.gap.tip_radius, "gap tip radius", place);
   check_not_negative(info.gap.vessel_radius, "gap vessel radius", place);
   check_finite(info.gap.z_low, "gap z_low", place);

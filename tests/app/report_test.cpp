@@ -106,11 +106,12 @@ Record made_up_run() {
     t.event.members = {t.particle};
     for (std::uint32_t f = e.first_frame; f <= e.last_frame; ++f) {
       const double angle = 0.04 * f, radius = 12.03e-3 + 2e-5 * (f % 17);
-      t.points.push_back({f,
-                          {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)),
-                           static_cast<float>(0.03 - 2e-5 * f)},
-                          {static_cast<float>(0.01 * (f % 23)), 0, 0},
-                          static_cast<float>(e.peak_force * (f == (e.first_frame + e.last_frame) / 2 ? 1 : 0.7))});
+      jam::Track::Point point;
+      point.frame = f;
+      point.position = {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), static_cast<float>(0.03 - 2e-5 * f)};
+      point.velocity = {static_cast<float>(0.01 * (f % 23)), 0, 0};
+      point.compressive_force = e.peak_force * (f == (e.first_frame + e.last_frame) / 2 ? 1 : 0.7);
+      t.points.push_back(point);
     }
     a.tracks.push_back(t);
   }

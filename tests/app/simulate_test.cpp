@@ -8,11 +8,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
 #include <thread>
 
+#include "libjam/results_file.hpp"
 #include "libjam/snapshot/reader.hpp"
 #include "tests/app/program.hpp"
 
@@ -76,6 +78,20 @@ frame_interval = "0.1 ms"
 series_interval = "0.02 ms"
 checkpoint_interval = "0.5 ms"
 )";
+
+// Rows of a table without its header; what is no number is 0.
+std::vector<std::vector<double>> numbers(const std::string& csv) {
+  std::vector<std::vector<double>> rows;
+  std::istringstream lines(csv);
+  std::string line, cell;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    while (std::getline(cells, cell, ',')) rows.back().push_back(std::strtod(cell.c_str(), nullptr));
+  }
+  return rows;
+}
 
 class SimulateProgram : public testing::Test {
  protected:
@@ -213,6 +229,46 @@ TEST_F(SimulateProgram, FollowsJamsFromStepToStepAndCapturesThem) {
     ++whole;
   }
   EXPECT_GT(whole, 5);
+
+  // The way of the members of a jam: as the tracks have it where they have it, and the contacts add up to the forces.
+  const jam::Analysis analysis = jam::read_results(folder_ / "whole/jam.h5");
+  ASSERT_FALSE(analysis.events.empty());
+  const jam::JamEvent& event = analysis.events[0];
+  const std::size_t followed = std::min<std::size_t>(event.last_frame + 2, analysis.frames.size());
+  const std::string follow = "follow -q " + file + " --jam 0 --set analysis.jam_force='1 N' --frames 0:" + std::to_string(followed);
+  const Outcome path = run_program(follow), contacts = run_program(follow + " --of contacts");
+  ASSERT_EQ(path.code, 0) << path.err;
+  ASSERT_EQ(contacts.code, 0) << contacts.err;
+  std::map<std::pair<int, unsigned>, std::vector<double>> way;
+  for (const std::vector<double>& row : numbers(path.out)) way[{int(row[0]), unsigned(row[2])}] = row;
+  EXPECT_EQ(way.size(), event.members.size() * followed);
+  std::size_t points = 0;
+  for (const jam::Track& track : analysis.tracks)
+    for (const jam::Track::Point& point : track.points) {
+      const auto at = way.find({int(point.frame), track.particle});
+      if (at == way.end()) continue;
+      ++points;
+      const std::vector<double>& row = at->second;
+      EXPECT_EQ(row[1], analysis.frames[point.frame].time);
+      EXPECT_FLOAT_EQ(float(row[3]), point.position.x());
+      EXPECT_FLOAT_EQ(float(row[6]), point.from_blade.x());
+      EXPECT_FLOAT_EQ(float(row[12]), point.speed_over_tip);
+      EXPECT_NEAR(row[18], point.compressive_force, 1e-6 * point.compressive_force);
+      EXPECT_EQ(row[22], 1);
+    }
+  EXPECT_GT(points, 0u);
+  std::map<std::pair<int, unsigned>, double> pushed;
+  for (const std::vector<double>& row : numbers(contacts.out)) pushed[{int(row[0]), unsigned(row[2])}] += std::max(row[5], 0.0);
+  for (const auto& [key, row] : way) EXPECT_NEAR(pushed[key], row[18], 1e-5 * row[18] + 1e-12);
+  for (const auto& [key, row] : way) {
+    const auto next = way.find({key.first + 1, key.second});
+    if (next != way.end()) {
+      EXPECT_GE(next->second[16], row[16]);
+    }
+  }
+  EXPECT_THAT(run_program("follow -q " + file + " --particles 99999").err, HasSubstr("no grain 99999"));
+  EXPECT_EQ(run_program("follow -q " + file + " --jam 99999").code, 2);
+  EXPECT_EQ(run_program("follow -q " + file).code, 2);
 }
 
 TEST_F(SimulateProgram, BenchSaysHowFastAndWhereTheTimeGoes) {

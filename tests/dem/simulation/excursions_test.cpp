@@ -37,14 +37,15 @@ auto key(const Excursion& e) { return std::tuple(e.last_step, e.id, e.first_step
 
 // What each step's view says, put together by hand.
 struct ByHand {
-  double watch_force;
+  double watch_force, watch_radius;
   std::map<std::uint32_t, Excursion> open;
   std::vector<Excursion> ended;
   void look(const View& view, double step) {
     std::map<std::uint32_t, Excursion> now;
     for (std::size_t i = 0; i < view.id.size(); ++i) {
       const double force = view.compressive_force[i];
-      if (!(force > watch_force)) continue;
+      const double limit = watch_radius > 0 ? watch_force * view.radius[i] * view.radius[i] / (watch_radius * watch_radius) : watch_force;
+      if (!(force > limit)) continue;
       Excursion& e = now[view.id[i]];
       if (const auto before = open.find(view.id[i]); before != open.end()) {
         e = before->second;
@@ -64,12 +65,19 @@ struct ByHand {
   }
 };
 
-TEST(Excursions, AreTheStaysAboveThatEachStepsForcesShow) {
+// One limit for all, or one that goes with the square of the radius.
+class ExcursionLimits : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Of, ExcursionLimits, ::testing::Values(0.0, 0.5e-3));
+
+TEST_P(ExcursionLimits, AreWhatTheStaysInEachStepsForcesAreAbove) {
   omp_set_num_threads(1);
   constexpr double watch_force = 0.3;
-  const Particles grains = support::packed_cube(6, 1e-7, 1.0, 5);
-  Simulation single(box(2.9e-3, watch_force), fresh(grains)), whole(box(2.9e-3, watch_force), fresh(grains));
-  ByHand by_hand{watch_force, {}, {}};
+  Particles grains = support::packed_cube(6, 1e-7, 1.0, 5);
+  for (std::size_t i = 0; i < grains.size(); ++i) grains.radius[i] *= 0.9 + 0.1 * double(i % 2);
+  dem::Setup setup = box(2.9e-3, watch_force);
+  setup.watch_radius = GetParam();
+  Simulation single(setup, fresh(grains)), whole(setup, fresh(grains));
+  ByHand by_hand{watch_force, GetParam(), {}, {}};
   constexpr std::uint64_t steps = 2000;
   for (std::uint64_t k = 0; k <= steps; ++k) {
     if (k > 0) single.advance(1);

@@ -44,6 +44,7 @@ Analysis busy_analysis() {
   for (unsigned k = 0; k < 20; ++k) {
     Snapshot frame = random_network(k, 40, 12);
     if (k % 3 == 2) frame = hand_made::unloaded(frame);
+    for (const std::uint32_t row : frame.pw.row) frame.pw.point.push_back(frame.particles.position[row] + Vec3f(0.5e-3f, 0, float(row) * 1e-4f));
     frame.time = 0.002 * k;
     frame.walls[hand_made::blade_wall].velocity = Vec3(0, 0, -0.02);
     frame.walls[hand_made::blade_wall].force = Vec3(0, 0, 1.0 / (k + 1));
@@ -86,6 +87,7 @@ void expect_same_event(const JamEvent& a, const JamEvent& b) {
   EXPECT_EQ(a.open_at_end, b.open_at_end);
   EXPECT_EQ(a.peak_force, b.peak_force);
   EXPECT_EQ(a.peak_time, b.peak_time);
+  EXPECT_TRUE(same(a.least_gap, b.least_gap));
   EXPECT_EQ(a.peak_particle, b.peak_particle);
   EXPECT_EQ(a.peak_in_gap, b.peak_in_gap);
   EXPECT_EQ(a.bridged, b.bridged);
@@ -145,6 +147,11 @@ void expect_same(const Analysis& a, const Analysis& b) {
       const Track::Point &one = a.tracks[k].points[p], &two = b.tracks[k].points[p];
       EXPECT_EQ(one.frame, two.frame);
       EXPECT_EQ(one.position, two.position);
+      EXPECT_EQ(one.from_blade, two.from_blade);
+      EXPECT_EQ(one.pushed_by, two.pushed_by);
+      EXPECT_EQ(one.in_gap, two.in_gap);
+      EXPECT_EQ(one.bridged, two.bridged);
+      EXPECT_TRUE(same(one.least_gap, two.least_gap));
       EXPECT_TRUE(one.velocity.array().isNaN().all() && two.velocity.array().isNaN().all());
       EXPECT_EQ(one.compressive_force, two.compressive_force);
     }

@@ -1,5 +1,5 @@
 // Records of jammed particles drawn as pictures: one string per particle, one character per frame. '.' not jammed,
-// a digit: jammed with that many tens of newtons.
+// a digit: jammed with that many tens of newtons; a letter: not jammed, but nearly, with as many newtons as it has before it in the alphabet.
 #pragma once
 #include <string>
 #include <utility>
@@ -20,8 +20,9 @@ inline std::vector<JamFrame> record(const std::vector<std::pair<ParticleId, std:
       JammedSample sample;
       sample.particle = particle;
       sample.position = Vec3f(static_cast<float>(particle), static_cast<float>(k), 0);
-      sample.compressive_force = 10.0 * (picture[k] - '0');
-      frames[k].jammed.push_back(sample);
+      const bool nearly = picture[k] >= 'a';
+      sample.compressive_force = nearly ? double(picture[k] - 'a') : 10.0 * (picture[k] - '0');
+      (nearly ? frames[k].nearly : frames[k].jammed).push_back(sample);
     }
   }
   return frames;

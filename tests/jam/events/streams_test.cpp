@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "libjam/events/every_step.hpp"
 #include "tests/jam/events/hand_made_record.hpp"
 
 namespace jam {
@@ -23,7 +24,7 @@ constexpr double rounding = 1e-15;
 
 TEST(StreamsTest, AnUninterruptedRunIsOneEventWithAllItsNumbers) {
   const auto frames = record({{7, "..354.."}});
-  const auto events = global_events(frames, D);
+  const auto events = global_events(frames, {D});
   ASSERT_EQ(events.size(), 1u);
   const JamEvent& e = events[0];
   EXPECT_EQ(e.first_frame, 2u);
@@ -43,7 +44,7 @@ TEST(StreamsTest, AnUninterruptedRunIsOneEventWithAllItsNumbers) {
 }
 
 TEST(StreamsTest, AJamFreeFrameEndsAnEvent) {
-  const auto events = global_events(record({{7, ".33.3."}}), D);
+  const auto events = global_events(record({{7, ".33.3."}}), {D});
   ASSERT_EQ(events.size(), 2u);
   EXPECT_EQ(events[0].samples, 2u);
   EXPECT_EQ(events[1].samples, 1u);
@@ -53,13 +54,13 @@ TEST(StreamsTest, AJamFreeFrameEndsAnEvent) {
 TEST(StreamsTest, TwoJamsAtTheSameTimeAreOneGlobalEventAndTwoTracks) {
   const auto frames = record({{3, ".3333.."},  //
                               {9, "..555.."}});
-  const auto events = global_events(frames, D);
+  const auto events = global_events(frames, {D});
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].samples, 4u);
   EXPECT_THAT(events[0].members, ElementsAre(3, 9));
   EXPECT_EQ(events[0].peak_particle, 9u);
 
-  const auto tracks = particle_tracks(frames, D);
+  const auto tracks = particle_tracks(frames, {D});
   ASSERT_EQ(tracks.size(), 2u);
   EXPECT_EQ(tracks[0].particle, 3u);
   EXPECT_EQ(tracks[0].event.samples, 4u);
@@ -76,11 +77,11 @@ TEST(StreamsTest, TwoJamsAtTheSameTimeAreOneGlobalEventAndTwoTracks) {
 TEST(StreamsTest, AJamHandedFromOneGrainToTheNextIsOneGlobalEventAndTwoTracks) {
   const auto frames = record({{3, ".33..."},  //
                               {9, "...55."}});
-  const auto events = global_events(frames, D);
+  const auto events = global_events(frames, {D});
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].samples, 4u);
   EXPECT_THAT(events[0].members, ElementsAre(3, 9));
-  const auto tracks = particle_tracks(frames, D);
+  const auto tracks = particle_tracks(frames, {D});
   ASSERT_EQ(tracks.size(), 2u);
   EXPECT_EQ(tracks[0].event.last_frame, 2u);
   EXPECT_EQ(tracks[1].event.first_frame, 3u);
@@ -90,8 +91,8 @@ TEST(StreamsTest, AJamHandedFromOneGrainToTheNextIsOneGlobalEventAndTwoTracks) {
 TEST(StreamsTest, AGrainThatJamsTwiceInsideOneEventIsNamedOnce) {
   const auto frames = record({{3, ".3.3.."},  //
                               {9, ".4444."}});
-  EXPECT_THAT(global_events(frames, D).at(0).members, ElementsAre(3, 9));
-  const auto tracks = particle_tracks(frames, D);
+  EXPECT_THAT(global_events(frames, {D}).at(0).members, ElementsAre(3, 9));
+  const auto tracks = particle_tracks(frames, {D});
   ASSERT_EQ(tracks.size(), 3u);  // by first frame, then particle
   EXPECT_EQ(tracks[0].particle, 3u);
   EXPECT_EQ(tracks[1].particle, 9u);
@@ -103,7 +104,7 @@ TEST(StreamsTest, EqualPeaksGoToTheEarliestFrameAndThenTheSmallestId) {
   const auto event = global_events(record({{2, ".35."},  //
                                            {4, ".5.."},
                                            {6, ".55."}}),
-                                   D)
+                                   {D})
                          .at(0);
   EXPECT_EQ(event.peak_particle, 4u);
   EXPECT_NEAR(event.peak_time, 2e-3, rounding);
@@ -111,7 +112,7 @@ TEST(StreamsTest, EqualPeaksGoToTheEarliestFrameAndThenTheSmallestId) {
 
 TEST(StreamsTest, AnEventAtTheEdgeOfTheRecordIsOpenThereAndItsBracketHasNoEnd) {
   const auto frames = record({{3, "33..3"}});
-  const auto events = global_events(frames, D);
+  const auto events = global_events(frames, {D});
   ASSERT_EQ(events.size(), 2u);
   EXPECT_TRUE(events[0].open_at_start);
   EXPECT_FALSE(events[0].open_at_end);
@@ -127,8 +128,8 @@ TEST(StreamsTest, MissingFramesCutAnEventAndOpenBothParts) {
   auto frames = record({{3, ".3333."}});
   for (std::size_t k = 4; k < frames.size(); ++k) frames[k].time += 2 * D;
   EXPECT_NEAR(sampling_interval(frames), D, rounding);
-  const auto events = global_events(frames, D);
-  const auto tracks = particle_tracks(frames, D);
+  const auto events = global_events(frames, {D});
+  const auto tracks = particle_tracks(frames, {D});
   ASSERT_EQ(events.size(), 2u);
   ASSERT_EQ(tracks.size(), 2u);
   for (const JamEvent* parts : {&events[0], &tracks[0].event}) {
@@ -146,17 +147,17 @@ TEST(StreamsTest, MissingFramesCutAnEventAndOpenBothParts) {
 TEST(StreamsTest, UnevenSamplingUpToOneAndAHalfIntervalsCutsNothing) {
   auto frames = record({{3, ".3333.."}});
   for (std::size_t k = 4; k < frames.size(); ++k) frames[k].time += 0.49 * D;
-  EXPECT_EQ(global_events(frames, D).size(), 1u);
+  EXPECT_EQ(global_events(frames, {D}).size(), 1u);
 }
 
 TEST(StreamsTest, AnEventIsBridgedWhenOneOfItsFramesIs) {
   auto frames = record({{3, ".33...3."},  //
                         {9, ".33....."}});
   frames[2].jammed[0].bridged = true;
-  const auto events = global_events(frames, D);
+  const auto events = global_events(frames, {D});
   EXPECT_TRUE(events[0].bridged);
   EXPECT_FALSE(events[1].bridged);
-  const auto tracks = particle_tracks(frames, D);
+  const auto tracks = particle_tracks(frames, {D});
   EXPECT_TRUE(tracks[0].event.bridged);   // particle 3 was part of the bridge,
   EXPECT_FALSE(tracks[1].event.bridged);  // particle 9 was not
 }
@@ -165,20 +166,20 @@ TEST(StreamsTest, WhetherThePeakSatInTheGapIsThatOfThePeakParticleThen) {
   auto frames = record({{3, ".373."},  //
                         {9, ".666."}});
   frames[2].jammed[0].in_gap = true;
-  EXPECT_TRUE(global_events(frames, D).at(0).peak_in_gap);
+  EXPECT_TRUE(global_events(frames, {D}).at(0).peak_in_gap);
   frames[2].jammed[0].in_gap = false;
   frames[2].jammed[1].in_gap = true;
-  EXPECT_FALSE(global_events(frames, D).at(0).peak_in_gap);
+  EXPECT_FALSE(global_events(frames, {D}).at(0).peak_in_gap);
 }
 
 TEST(StreamsTest, NothingComesOfNothing) {
-  EXPECT_THAT(global_events({}, 0), IsEmpty());
-  EXPECT_THAT(particle_tracks({}, 0), IsEmpty());
-  EXPECT_THAT(global_events(record({{3, "....."}}), D), IsEmpty());
+  EXPECT_THAT(global_events({}, {}), IsEmpty());
+  EXPECT_THAT(particle_tracks({}, {}), IsEmpty());
+  EXPECT_THAT(global_events(record({{3, "....."}}), {D}), IsEmpty());
   const auto one = record({{3, "3"}});
   EXPECT_EQ(sampling_interval(one), 0);
-  ASSERT_EQ(global_events(one, 0).size(), 1u);
-  EXPECT_TRUE(global_events(one, 0)[0].open_at_start && global_events(one, 0)[0].open_at_end);
+  ASSERT_EQ(global_events(one, {}).size(), 1u);
+  EXPECT_TRUE(global_events(one, {})[0].open_at_start && global_events(one, {})[0].open_at_end);
 }
 
 TEST(StreamsTest, AgreeWithASearchThroughEachParticlesRowOnRandomRecords) {
@@ -199,13 +200,115 @@ TEST(StreamsTest, AgreeWithASearchThroughEachParticlesRowOnRandomRecords) {
       }
     }
     std::size_t previous_first = 0;
-    for (const Track& track : particle_tracks(record(rows), D)) {
+    for (const Track& track : particle_tracks(record(rows), {D})) {
       found.emplace(track.event.first_frame, track.particle, track.event.samples);
       EXPECT_EQ(track.points.size(), track.event.samples);
       EXPECT_GE(track.event.first_frame, previous_first);
       previous_first = track.event.first_frame;
     }
     EXPECT_EQ(found, expected);
+  }
+}
+
+// Frames 2 ms apart; letters are above end_force and not jammed.
+TEST(StreamsTest, AnEventLastsWhileItIsAboveItsEndForce) {
+  const auto frames = record({{3, ".bb....."},       // never jammed: part of the event, no member, no track
+                              {7, "..b3b3b."},      //
+                              {9, "......b."}});
+  const auto events = global_events(frames, {D});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].first_frame, 1u);
+  EXPECT_EQ(events[0].last_frame, 6u);
+  EXPECT_THAT(events[0].members, ElementsAre(7));
+  EXPECT_EQ(events[0].peak_particle, 7u);
+  const auto tracks = particle_tracks(frames, {D});
+  ASSERT_EQ(tracks.size(), 1u);
+  EXPECT_EQ(tracks[0].event.first_frame, 2u);
+  EXPECT_EQ(tracks[0].event.samples, 5u);
+  EXPECT_EQ(tracks[0].points.size(), 5u);
+}
+
+TEST(StreamsTest, PausesUpToTheHoldOffDoNotEndAnEvent) {
+  const auto frames = record({{7, "3.3..3...3"}});
+  const auto samples = [&](double hold_off) {
+    std::vector<std::uint32_t> all;
+    for (const JamEvent& event : global_events(frames, {D, hold_off})) all.push_back(event.samples);
+    std::vector<std::uint32_t> of_tracks;
+    for (const Track& track : particle_tracks(frames, {D, hold_off})) of_tracks.push_back(track.event.samples);
+    EXPECT_EQ(all, of_tracks);
+    return all;
+  };
+  EXPECT_THAT(samples(0.99 * D), ElementsAre(1, 1, 1, 1));
+  EXPECT_THAT(samples(1 * D), ElementsAre(3, 1, 1));
+  EXPECT_THAT(samples(2 * D), ElementsAre(6, 1));
+  EXPECT_THAT(samples(3 * D), ElementsAre(10));
+}
+
+TEST(StreamsTest, NoHoldOffReachesOverMissingFrames) {
+  auto frames = record({{7, "3333"}});
+  for (std::size_t k = 2; k < 4; ++k) frames[k].time += 4 * D;
+  EXPECT_EQ(global_events(frames, {D, 100 * D}).size(), 2u);
+}
+
+TEST(StreamsTest, ShortEventsDoNotCount) {
+  const auto frames = record({{3, "3..33.333"}});
+  EXPECT_EQ(global_events(frames, {D, 0, 2 * D}).size(), 2u);
+  EXPECT_EQ(particle_tracks(frames, {D, 0, 3 * D}).size(), 1u);
+}
+
+// The sampled rule and the rule of every step (every_step.hpp) are one: they agree where every step is a frame.
+TEST(StreamsTest, TheRuleIsThatOfEveryStep) {
+  std::mt19937 random(11);
+  for (int repetition = 0; repetition < 200; ++repetition) {
+    std::vector<std::pair<ParticleId, std::string>> rows;
+    Excursions stays;
+    const Detector detector{.start_force = 15, .end_force = 2, .hold_off = double(random() % 4) * D, .shortest = double(random() % 4) * D};
+    for (ParticleId p = 1; p < 5; ++p) {
+      std::string picture;
+      for (int k = 0; k < 40; ++k) picture += ".....df2346"[random() % 11];
+      rows.emplace_back(p, picture);
+    }
+    const auto frames = record(rows);
+    struct Stay {
+      std::uint64_t first, last;
+      ParticleId particle;
+      float peak;
+    };
+    std::vector<Stay> all;
+    for (const auto& [p, picture] : rows)
+      for (std::size_t k = 0; k < picture.size(); ++k) {
+        if (picture[k] == '.') continue;
+        Stay stay{k, k, p, 0};
+        for (; k < picture.size() && picture[k] != '.'; ++k) {
+          stay.last = k;
+          stay.peak = std::max(stay.peak, picture[k] >= 'a' ? float(picture[k] - 'a') : 10.0f * float(picture[k] - '0'));
+        }
+        all.push_back(stay);
+      }
+    std::sort(all.begin(), all.end(), [](const Stay& a, const Stay& b) { return std::pair(a.first, a.particle) < std::pair(b.first, b.particle); });
+    for (const Stay& stay : all) {
+      stays.particle.push_back(stay.particle);
+      stays.first_step.push_back(stay.first);
+      stays.last_step.push_back(stay.last);
+      stays.peak_step.push_back(stay.first);
+      stays.peak_force.push_back(stay.peak);
+      for (auto* column : {&stays.impulse, &stays.work, &stays.path, &stays.turned}) column->push_back(0);
+      for (auto* column : {&stays.first_position, &stays.peak_position, &stays.last_position}) column->push_back(Vec3f::Zero());
+      stays.open.push_back(0);
+    }
+    const SampledDetector sampled{D, detector.hold_off, detector.shortest};
+    using Span = std::pair<long, long>;
+    std::vector<Span> by_frames, by_steps;
+    for (const JamEvent& e : global_events(frames, sampled)) by_frames.emplace_back(std::lround(e.start / D), std::lround(e.end / D));
+    for (const StepJam& j : step_jams(stays, JamStream::global, detector, {}, {}, D, 1, 0))
+      by_steps.emplace_back(std::lround(j.start / D), std::lround(j.end / D));
+    EXPECT_EQ(by_frames, by_steps);
+    std::vector<std::tuple<long, ParticleId, long>> tracks, step_tracks;
+    for (const Track& t : particle_tracks(frames, sampled)) tracks.emplace_back(std::lround(t.event.start / D), t.particle, std::lround(t.event.end / D));
+    for (const StepJam& j : step_jams(stays, JamStream::particle, detector, {}, {}, D, 1, 0))
+      step_tracks.emplace_back(std::lround(j.start / D), j.members.at(0), std::lround(j.end / D));
+    std::sort(step_tracks.begin(), step_tracks.end());
+    EXPECT_EQ(tracks, step_tracks);
   }
 }
 
@@ -238,7 +341,7 @@ TEST(SamplingKernelTest, SurvivalTimesAreUnbiasedForJamsAtARandomPhase) {
           frames[k].jammed.push_back({.particle = 1, .compressive_force = 30});
         }
       }
-      const auto events = global_events(frames, 1.0);
+      const auto events = global_events(frames, {1.0});
       ASSERT_LE(events.size(), 1u);
       const unsigned n = events.empty() ? 0 : events[0].samples;
       if (n > 0) {
@@ -284,7 +387,7 @@ TEST(SamplingKernelTest, MissesTheKnownShareOfExponentialJams) {
           frames[k].jammed.push_back({.particle = 1, .compressive_force = 30});
         }
       }
-      const auto events = global_events(frames, D);
+      const auto events = global_events(frames, {D});
       missed += events.empty();
       for (const JamEvent& e : events) {
         sum += e.survival_time;

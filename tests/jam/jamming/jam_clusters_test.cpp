@@ -63,6 +63,16 @@ TEST(JamClustersTest, TwoGrainsBridgeTogether) {
   EXPECT_EQ(clusters[0].vessel_force, 29);
 }
 
+TEST(JamClustersTest, TheLeastGapIsBetweenTheNearestPointsThatCarryTheLoad) {
+  //   blade |(1)(2)| vessel, the vessel also by a contact off the load path, nearer to the blade
+  Snapshot s = Network().press(1, blade_wall, 30).touch(1, 2, 30).press(1, vessel_wall, 1).press(2, vessel_wall, 29).snapshot();
+  EXPECT_TRUE(std::isnan(clusters_of(s)[0].least_gap));  // no points, no normals
+  const Vec3f origin = s.particles.position[0];
+  s.pw.point = {origin + Vec3f(-0.5e-3f, 0, 0), origin + Vec3f(0, 0.5e-3f, 0), origin + Vec3f(1e-3f, 0, 2e-3f)};
+  EXPECT_NEAR(clusters_of(s)[0].least_gap, 2.5e-3, 1e-8);  // (1.5, 0, 2) mm; positions have seven digits
+  EXPECT_TRUE(std::isnan(clusters_of(Network().press(1, blade_wall, 30).snapshot())[0].least_gap));
+}
+
 TEST(JamClustersTest, TwoJamsAtDifferentPlacesAreTwoClusters) {
   //   blade |(1)| vessel ...... blade |(8)(9)| vessel
   const auto clusters = clusters_of(Network()

@@ -75,6 +75,7 @@ inline RunInfo info() {
   plate.sphere_radius = {0.0005, 0.0006};
   r.walls = {vessel, blade, floor, hopper, lid, plate};  // not in the order of their names
   r.watch_force = 12.5;
+  r.watch_radius = 5e-4;
   r.watch_stride = 8;
   r.gap = {0.0235, 0.025, -0.003, 0.003};
   return r;

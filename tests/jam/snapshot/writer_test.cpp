@@ -81,6 +81,7 @@ TEST_F(SnapshotFile, WhatIsKnownAboutTheRunComesBackExactly) {
     EXPECT_EQ(a.walls[w].triangle_label, b.walls[w].triangle_label);
   }
   EXPECT_EQ(a.watch_force, b.watch_force);
+  EXPECT_EQ(a.watch_radius, b.watch_radius);
   EXPECT_EQ(a.watch_stride, b.watch_stride);
   EXPECT_EQ(a.gap.tip_radius, b.gap.tip_radius);
   EXPECT_EQ(a.gap.vessel_radius, b.gap.vessel_radius);

@@ -1,0 +1,358 @@
+#include "apps/jamscope/claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/toml_reader.hpp"
+#include "libjam/errors.hpp"
+
+namespace jamscope {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using List = std::vector<double>;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+struct Claim {
+  std::string name, says, source, expected, measure, of, run, against_of, against_run, unit;
+  std::uint64_t number = 0, first = 0;
+  List values;
+  std::optional<double> low, high;
+};
+
+struct Summary {
+  std::string path, name;
+  Json analysis;
+};
+
+// A number, or a list of numbers; "of" is the path with dots. Nothing where it is not there; null counts as NaN.
+std::optional<List> find(const Json& analysis, const std::string& of) {
+  const Json* at = &analysis;
+  for (std::size_t begin = 0; begin <= of.size();) {
+    const std::size_t end = std::min(of.find('.', begin), of.size());
+    const std::string key = of.substr(begin, end - begin);
+    begin = end + 1;
+    if (at->is_array() && !at->empty() && at->front().is_object()) {
+      // Of a list of objects: this key of each.
+      List column;
+      for (const Json& row : *at) {
+        if (!row.contains(key)) return std::nullopt;
+        column.push_back(row[key].is_number() ? row[key].get<double>() : nan);
+      }
+      return column;
+    }
+    if (!at->is_object() || !at->contains(key)) return std::nullopt;
+    at = &(*at)[key];
+  }
+  if (at->is_array() && !at->empty() && at->front().is_object()) return std::nullopt;
+  List values;
+  if (!at->is_array()) return List{at->is_number() ? at->get<double>() : nan};
+  for (const Json& value : *at) values.push_back(value.is_number() ? value.get<double>() : nan);
+  return values;
+}
+
+List ranks(const List& values) {
+  List rank(values.size());
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    double below = 0, same = 0;
+    for (const double other : values) below += other < values[k], same += other == values[k];
+    rank[k] = below + (same + 1) / 2;  // equal ones share the mean of their ranks
+  }
+  return rank;
+}
+
+// Pearson's correlation.
+double correlation(const List& x, const List& y) {
+  const double n = double(x.size());
+  double sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) sx += x[k], sy += y[k];
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double a = x[k] - sx / n, b = y[k] - sy / n;
+    xx += a * a, yy += b * b, xy += a * b;
+  }
+  return xy / std::sqrt(xx * yy);
+}
+
+// MEASURES. Add one: a row with a function of what `of` gives in `run`, what `against_of` gives in `against_run` (empty where the measure takes one
+// run), and the claim.
+struct Measure {
+  const char *name, *doc;
+  bool two;  // takes two runs
+  double (*of)(const List& a, const List& b, const Claim& claim);
+};
+double same_length(const List& a, const List& b, double (*f)(const List&, const List&)) { return a.size() == b.size() && !a.empty() ? f(a, b) : nan; }
+constexpr Measure measures[] = {
+    {"value", "the number itself", false, [](const List& a, const List&, const Claim&) { return a.size() == 1 ? a[0] : nan; }},
+    {"sum", "of the numbers of a list, from number `first` on", false,
+     [](const List& a, const List&, const Claim& c) {
+       double sum = 0;
+       for (std::size_t k = c.first; k < a.size(); ++k) sum += a[k];
+       return sum;
+     }},
+    {"largest_at", "which number of a list is the largest, from number `first` on, counted from 0", false,
+     [](const List& a, const List&, const Claim& c) {
+       return a.size() <= c.first ? nan : double(std::max_element(a.begin() + std::ptrdiff_t(c.first), a.end()) - a.begin());
+     }},
+    {"rank_correlation", "Spearman's, of a list against its order, from number `first` on: -1 where it only falls", false,
+     [](const List& a, const List&, const Claim& c) {
+       if (a.size() < c.first + 2) return nan;
+       const List values(a.begin() + std::ptrdiff_t(c.first), a.end());
+       List order(values.size());
+       for (std::size_t k = 0; k < order.size(); ++k) order[k] = double(k);
+       return correlation(ranks(values), order);
+     }},
+    {"largest_difference", "from a list of `values`, in magnitude", false,
+     [](const List& a, const List&, const Claim& c) {
+       return same_length(a, c.values, [](const List& x, const List& y) {
+         double most = 0;
+         for (std::size_t k = 0; k < x.size(); ++k) most = std::max(most, std::abs(x[k] - y[k]));
+         return most;
+       });
+     }},
+    {"ratio", "of two runs' numbers", true, [](const List& a, const List& b, const Claim&) { return a.size() == 1 && b.size() == 1 ? a[0] / b[0] : nan; }},
+    {"difference", "of two runs' numbers", true, [](const List& a, const List& b, const Claim&) { return a.size() == 1 && b.size() == 1 ? a[0] - b[0] : nan; }},
+    {"share_above", "of the places at which one run's list is above the other's", true,
+     [](const List& a, const List& b, const Claim&) {
+       return same_length(a, b, [](const List& x, const List& y) {
+         double above = 0;
+         for (std::size_t k = 0; k < x.size(); ++k) above += x[k] > y[k];
+         return above / double(x.size());
+       });
+     }},
+    {"largest_ratio", "between two runs' lists, upward or downward", true,
+     [](const List& a, const List& b, const Claim&) {
+       return same_length(a, b, [](const List& x, const List& y) {
+         double most = 1;
+         for (std::size_t k = 0; k < x.size(); ++k) most = std::max({most, x[k] / y[k], y[k] / x[k]});
+         return most;
+       });
+     }},
+    {"rms_difference", "of two runs' lists: root of the mean of squares, over the places that both have", true,
+     [](const List& a, const List& b, const Claim&) {
+       return same_length(a, b, [](const List& x, const List& y) {
+         double sum = 0, places = 0;
+         for (std::size_t k = 0; k < x.size(); ++k) {
+           if (!std::isfinite(x[k]) || !std::isfinite(y[k])) continue;
+           sum += (x[k] - y[k]) * (x[k] - y[k]);
+           ++places;
+         }
+         return std::sqrt(sum / places);
+       });
+     }},
+    {"power", "exponent of the ratio of two runs' numbers in that of `values` = [run's, against_run's], for example their stiffnesses", true,
+     [](const List& a, const List& b, const Claim& c) {
+       return a.size() == 1 && b.size() == 1 && c.values.size() == 2 ? std::log(a[0] / b[0]) / std::log(c.values[0] / c.values[1]) : nan;
+     }},
+};
+
+const Measure* find_measure(const std::string& name) {
+  for (const Measure& m : measures)
+    if (m.name == name) return &m;
+  return nullptr;
+}
+
+std::vector<Claim> read_claims(const std::string& path) {
+  Document document(read_text_file(path), path, {});
+  Section root = document.root();
+  Section table = root.section("claim");
+  std::vector<Claim> all;
+  for (auto& [name, s] : table.named_sections()) {
+    Claim c;
+    c.name = name;
+    s.whole_number("number", c.number);
+    s.text("says", c.says);
+    s.text("source", c.source, Need::optional);
+    s.text("expected", c.expected, Need::optional);
+    s.text("measure", c.measure);
+    s.text("of", c.of);
+    s.text("run", c.run);
+    s.text("unit", c.unit, Need::optional);
+    s.whole_number("first", c.first, Need::optional);
+    s.numbers("values", c.values, Need::optional);
+    if (double value = 0; s.number("low", value, Need::optional)) c.low = value;
+    if (double value = 0; s.number("high", value, Need::optional)) c.high = value;
+    const bool against = s.text("against_run", c.against_run, Need::optional);
+    c.against_of = c.of;
+    s.text("against_of", c.against_of, Need::optional);
+    s.finish();
+    const std::string at = "claim." + name;
+    if (const Measure* const m = find_measure(c.measure); m == nullptr) {
+      std::vector<std::string> known;
+      for (const Measure& row : measures) known.emplace_back(row.name);
+      if (!c.measure.empty()) document.problem(at + ".measure", fmt::format("no measure '{}'{}", c.measure, suggestion(c.measure, known)));
+    } else if (m->two != against) {
+      document.problem(at, m->two ? fmt::format("'{}' takes two runs: against_run is missing", c.measure) : fmt::format("'{}' takes one run, not against_run", c.measure));
+    }
+    if (!c.low && !c.high) document.problem(at, "holds always: expected low, high or both");
+    if (c.low && c.high && *c.low > *c.high) document.problem(at + ".low", "is above high");
+    all.push_back(std::move(c));
+  }
+  root.finish();
+  document.throw_problems();
+  std::stable_sort(all.begin(), all.end(), [](const Claim& a, const Claim& b) { return a.number < b.number; });
+  return all;
+}
+
+Summary read_summary(const fs::path& path) {
+  const std::string text = read_text_file(path.string());
+  Json json = Json::parse(text, nullptr, false);
+  const auto text_of = [&](const char* pointer) { return json.value(Json::json_pointer(pointer), std::string()); };
+  if (json.is_discarded() || !json.is_object() || !json.contains("analysis") || !json.contains("run") || !json["analysis"].is_object() || !json["run"].is_object())
+    throw jam::DataError(path.string() + ": no summary of a run, expected the summary.json of `jamscope simulate` or `jamscope analyze`");
+  return {path.string(), json["run"].contains("name") && json["run"]["name"].is_string() ? text_of("/run/name") : path.parent_path().filename().string(),
+          std::move(json["analysis"])};
+}
+
+// A folder with a summary.json, such a file, or a folder of either, in order of their names.
+std::vector<Summary> read_summaries(const std::vector<std::string>& paths) {
+  std::vector<Summary> all;
+  for (const std::string& path : paths) {
+    if (!fs::exists(path)) throw jam::DataError(path + ": cannot be read: no such file or folder");
+    if (!fs::is_directory(path)) {
+      all.push_back(read_summary(path));
+      continue;
+    }
+    std::vector<fs::path> files;
+    if (fs::exists(fs::path(path) / "summary.json")) {
+      files.push_back(fs::path(path) / "summary.json");
+    } else {
+      for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+        if (entry.is_directory() && fs::exists(entry.path() / "summary.json")) files.push_back(entry.path() / "summary.json");
+        if (entry.is_regular_file() && entry.path().extension() == ".json") files.push_back(entry.path());
+      }
+      std::sort(files.begin(), files.end());
+    }
+    if (files.empty()) throw jam::DataError(path + ": holds no summary.json, nor folders that do");
+    for (const fs::path& file : files) all.push_back(read_summary(file));
+  }
+  return all;
+}
+
+struct Verdict {
+  double value = nan, low = nan, high = nan;
+  std::size_t runs = 0, against = 0;  // repetitions
+  std::string word, why;
+};
+
+Verdict judge(const Claim& claim, const std::vector<Summary>& summaries) {
+  const Measure& measure = *find_measure(claim.measure);
+  Verdict v;
+  std::string missing;
+  const auto lists = [&](const std::string& run, const std::string& of) {
+    std::vector<List> found;
+    for (const Summary& s : summaries) {
+      if (s.name != run) continue;
+      if (auto list = find(s.analysis, of))
+        found.push_back(std::move(*list));
+      else
+        missing = fmt::format("{} has no {}", s.path, of);
+    }
+    if (found.empty() && missing.empty()) missing = fmt::format("no run {}", run);
+    return found;
+  };
+  const std::vector<List> mine = lists(claim.run, claim.of);
+  const std::vector<List> others = measure.two ? lists(claim.against_run, claim.against_of) : std::vector<List>{{}};
+  v.runs = mine.size();
+  v.against = measure.two ? others.size() : 0;
+  List values;
+  for (const List& a : mine)
+    for (const List& b : others)
+      if (const double x = measure.of(a, b, claim); std::isfinite(x)) values.push_back(x);
+  v.word = "not measured";
+  if (values.empty()) {
+    v.why = missing.empty() ? "not defined in these runs" : missing;
+    return v;
+  }
+  std::sort(values.begin(), values.end());
+  v.low = values.front();
+  v.high = values.back();
+  const std::size_t half = values.size() / 2;
+  v.value = values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+  v.word = (!claim.low || v.value >= *claim.low) && (!claim.high || v.value <= *claim.high) ? "holds" : "does not hold";
+  return v;
+}
+
+std::string band(const Claim& c) {
+  if (c.low && c.high) return *c.low == *c.high ? fmt::format("{:.4g}", *c.low) : fmt::format("{:.4g} to {:.4g}", *c.low, *c.high);
+  return c.low ? fmt::format("from {:.4g}", *c.low) : fmt::format("up to {:.4g}", *c.high);
+}
+
+std::string ours(const Claim& c, const Verdict& v) {
+  if (std::isnan(v.value)) return "-";
+  const std::string unit = c.unit.empty() ? "" : " " + c.unit;
+  return v.low == v.high ? fmt::format("{:.4g}{}", v.value, unit) : fmt::format("{:.4g} ({:.4g} to {:.4g}){}", v.value, v.low, v.high, unit);
+}
+
+std::string how(const Claim& c, const Verdict& v) {
+  const auto of = [](const std::string& path, const std::string& run, std::size_t n) { return fmt::format("{} of {}{}", path, run, n > 1 ? fmt::format(" ({} runs)", n) : ""); };
+  std::string text = fmt::format("{}: {}", c.measure, of(c.of, c.run, v.runs));
+  if (!c.against_run.empty()) text += ", against " + of(c.against_of, c.against_run, v.against);
+  return v.why.empty() ? text : text + "; " + v.why;
+}
+
+std::string markdown(const std::vector<Claim>& all, const std::vector<Verdict>& verdicts) {
+  std::string out = "| # | claim | source says | measured | holds in | verdict | how |\n| --- | --- | --- | --- | --- | --- | --- |\n";
+  for (std::size_t k = 0; k < all.size(); ++k)
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", all[k].number, all[k].says, all[k].expected, ours(all[k], verdicts[k]), band(all[k]), verdicts[k].word,
+                       how(all[k], verdicts[k]));
+  return out;
+}
+
+std::string plain(const std::vector<Claim>& all, const std::vector<Verdict>& verdicts) {
+  std::string out;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    out += fmt::format("{:>3}  {:<13} {}\n", all[k].number, verdicts[k].word, all[k].says);
+    out += fmt::format("     {:<13} source: {}; measured: {}; holds in: {}\n     {:<13} {}\n", "", all[k].expected.empty() ? "-" : all[k].expected,
+                       ours(all[k], verdicts[k]), band(all[k]), "", how(all[k], verdicts[k]));
+  }
+  return out;
+}
+
+Json json_of(const std::vector<Claim>& all, const std::vector<Verdict>& verdicts) {
+  const auto or_null = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
+  Json rows = Json::array();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Claim& c = all[k];
+    const Verdict& v = verdicts[k];
+    rows.push_back({{"number", c.number}, {"name", c.name}, {"says", c.says}, {"source", c.source}, {"expected", c.expected}, {"unit", c.unit.empty() ? "1" : c.unit},
+                    {"value", or_null(v.value)}, {"low", or_null(v.low)}, {"high", or_null(v.high)}, {"runs", v.runs},
+                    {"holds_from", c.low ? Json(*c.low) : Json(nullptr)}, {"holds_to", c.high ? Json(*c.high) : Json(nullptr)}, {"verdict", v.word}, {"how", how(c, v)}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string claim_measures() {
+  std::string text = "Measures:\n";
+  for (const Measure& m : measures) text += fmt::format("  {:<20} {}{}\n", m.name, m.doc, m.two ? " (takes against_run)" : "");
+  return text;
+}
+
+int claims(const ClaimsOptions& options) {
+  const std::vector<Claim> all = read_claims(options.claims);
+  const std::vector<Summary> summaries = read_summaries(options.runs);
+  std::vector<Verdict> verdicts;
+  for (const Claim& claim : all) verdicts.push_back(judge(claim, summaries));
+  switch (options.format) {
+    case ClaimsFormat::json: fmt::print("{}\n", json_of(all, verdicts).dump(2)); return 0;
+    case ClaimsFormat::markdown: fmt::print("{}", markdown(all, verdicts)); break;
+    case ClaimsFormat::text: fmt::print("{}", plain(all, verdicts)); break;
+  }
+  std::map<std::string, std::size_t> count;
+  for (const Verdict& v : verdicts) ++count[v.word];
+  fmt::print("\n{} claims, {} runs: {} hold, {} do not, {} not measured\n", all.size(), summaries.size(), count["holds"], count["does not hold"], count["not measured"]);
+  return 0;
+}
+
+}  // namespace jamscope

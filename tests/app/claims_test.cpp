@@ -1,0 +1,118 @@
+// jamscope claims on small summaries written here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/app/program.hpp"
+
+namespace jamscope {
+namespace {
+
+using ::testing::HasSubstr;
+using nlohmann::json;
+
+class ClaimsProgram : public ::testing::Test {
+ protected:
+  // Writes a summary of a run into NAME.json of the folder `runs`.
+  void run(const std::string& file, const std::string& name, const json& analysis) {
+    std::filesystem::create_directories(folder_ / "runs");
+    std::ofstream(folder_ / ("runs/" + file + ".json")) << json{{"run", {{"name", name}}}, {"analysis", analysis}};
+  }
+  std::string claims(const std::string& text) {
+    std::ofstream(folder_ / "claims.toml") << text;
+    return "claims " + (folder_ / "runs") + " --claims " + (folder_ / "claims.toml");
+  }
+  json judged(const std::string& text) {
+    const Outcome outcome = run_program(claims(text) + " --format json");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.code == 0 ? json::parse(outcome.out) : json();
+  }
+  // Of one claim with this measure and these further lines.
+  json one(const std::string& measure, const std::string& of, const std::string& more) {
+    return judged("[claim.it]\nnumber = 1\nsays = \"it\"\nmeasure = \"" + measure + "\"\nof = \"" + of + "\"\nrun = \"a\"\n" + more).at(0);
+  }
+  Scratch folder_;
+};
+
+TEST_F(ClaimsProgram, MeasuresGiveWhatTheySay) {
+  run("1", "a", {{"x", 6.0}, {"list", {1.0, 4.0, 3.0, 2.0}}, {"nested", {{"y", 0.5}}}, {"rows", {{{"z", 0.25}}, {{"z", 0.75}}}}, {"unknown", nullptr}});
+  run("2", "b", {{"x", 2.0}, {"list", {2.0, 2.0, 6.0, 2.0}}});
+  EXPECT_EQ(one("value", "x", "high = 7.0")["value"], 6.0);
+  EXPECT_EQ(one("value", "nested.y", "high = 7.0")["value"], 0.5);
+  EXPECT_EQ(one("sum", "list", "first = 1\nhigh = 7.0")["value"], 9.0);
+  EXPECT_EQ(one("largest_at", "list", "high = 7.0")["value"], 1.0);
+  EXPECT_EQ(one("largest_at", "list", "first = 2\nhigh = 7.0")["value"], 2.0);
+  EXPECT_EQ(one("rank_correlation", "list", "first = 1\nhigh = 7.0")["value"], -1.0);
+  EXPECT_EQ(one("largest_difference", "rows.z", "values = [0.5, 0.8]\nhigh = 7.0")["value"], 0.25);
+  const std::string b = "against_run = \"b\"\nhigh = 7.0\n";
+  EXPECT_EQ(one("ratio", "x", b)["value"], 3.0);
+  EXPECT_EQ(one("difference", "x", b)["value"], 4.0);
+  EXPECT_EQ(one("share_above", "list", b)["value"], 0.25);
+  EXPECT_EQ(one("largest_ratio", "list", b)["value"], 2.0);
+  EXPECT_EQ(one("rms_difference", "list", b)["value"], std::sqrt((1 + 4 + 9) / 4.0));
+  EXPECT_EQ(one("power", "x", b + "values = [9, 3]")["value"], 1.0);
+}
+
+TEST_F(ClaimsProgram, VerdictsAreComputed) {
+  run("1", "a", {{"x", 6.0}, {"unknown", nullptr}});
+  run("2", "a", {{"x", 8.0}});
+  run("3", "a", {{"x", 1.0}});
+  const json within = one("value", "x", "low = 6.0\nhigh = 6.0");
+  EXPECT_EQ(within["verdict"], "holds");  // the median of three
+  EXPECT_EQ(within["runs"], 3);
+  EXPECT_EQ(within["low"], 1.0);
+  EXPECT_EQ(within["high"], 8.0);
+  EXPECT_EQ(one("value", "x", "low = 6.5")["verdict"], "does not hold");
+  EXPECT_EQ(one("value", "x", "high = 5.5")["verdict"], "does not hold");
+  for (const char* of : {"nowhere", "unknown", "x.deeper"}) {
+    const json none = one("value", of, "high = 1.0");
+    EXPECT_EQ(none["verdict"], "not measured") << of;
+    EXPECT_TRUE(none["value"].is_null());
+  }
+  EXPECT_THAT(std::string(one("ratio", "x", "against_run = \"c\"\nhigh = 1.0")["how"]), HasSubstr("no run c"));
+}
+
+TEST_F(ClaimsProgram, RefusesBrokenClaimsAndSummaries) {
+  run("1", "a", {{"x", 6.0}});
+  const std::string good = "[claim.it]\nnumber = 1\nsays = \"it\"\nof = \"x\"\nrun = \"a\"\n";
+  const auto refused = [&](const std::string& text, const std::string& why) {
+    const Outcome outcome = run_program(claims(text));
+    EXPECT_EQ(outcome.code, 2) << text;
+    EXPECT_THAT(outcome.err, HasSubstr(why));
+  };
+  refused(good + "measure = \"vale\"\nlow = 1.0", "did you mean 'value'");
+  refused(good + "measure = \"value\"", "holds always");
+  refused(good + "measure = \"ratio\"\nlow = 1.0", "against_run is missing");
+  refused(good + "measure = \"value\"\nagainst_run = \"a\"\nlow = 1.0", "takes one run");
+  refused(good + "measure = \"value\"\nlow = 2.0\nhigh = 1.0", "above high");
+  refused(good + "measure = \"value\"\nlow = 2.0\nlo = 1.0", "unknown key");
+  refused("[claim.it]\nnumber", "claims.toml:2");
+  std::ofstream(folder_ / "runs/broken.json") << "{\"run\": 3}";
+  EXPECT_EQ(run_program(claims(good + "measure = \"value\"\nlow = 1.0")).code, 3);
+  EXPECT_EQ(run_program("claims " + (folder_ / "nowhere") + " --claims " + (folder_ / "claims.toml")).code, 3);
+}
+
+// The claims of the paper: readable, and each measured or not with a reason, whatever runs there are.
+TEST_F(ClaimsProgram, ThePapersClaimsAreThere) {
+  run("1", "ft4_a_down", {{"criteria", {{"jam_force_N", 20.0}}}});
+  const Outcome outcome = run_program("claims " + (folder_ / "runs") + " --claims " JAMSCOPE_DATA_DIR "/reference/paper_claims.toml --format json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json rows = json::parse(outcome.out);
+  std::set<int> numbers;
+  for (const json& row : rows) {
+    numbers.insert(int(row["number"]));
+    EXPECT_EQ(row["verdict"], row["name"] == "jam_force" ? "holds" : "not measured") << row["name"];
+  }
+  EXPECT_EQ(numbers.size(), 28u);
+  EXPECT_EQ(*numbers.begin(), 1);
+  EXPECT_EQ(*numbers.rbegin(), 28);
+  for (const char* format : {"text", "markdown"})
+    EXPECT_THAT(run_program("claims " + (folder_ / "runs") + " --claims " JAMSCOPE_DATA_DIR "/reference/paper_claims.toml --format " + format).out, HasSubstr("20 N"));
+}
+
+}  // namespace
+}  // namespace jamscope
