@@ -18,7 +18,9 @@
 #include "apps/jamscope/claims.hpp"
 #include "apps/jamscope/compare.hpp"
 #include "apps/jamscope/checkpoint.hpp"
+#include "apps/jamscope/completion.hpp"
 #include "apps/jamscope/errors.hpp"
+#include "apps/jamscope/export.hpp"
 #include "apps/jamscope/follow.hpp"
 #include "apps/jamscope/inspect.hpp"
 #include "apps/jamscope/network_metrics.hpp"
@@ -49,6 +51,8 @@ struct Options {
   ClaimsOptions claims;
   MergeOptions merge;
   BenchOptions bench;
+  ExportOptions export_;
+  std::string shell;
 };
 
 const std::map<std::string, LogFormat> log_formats{{"text", LogFormat::text}, {"jsonl", LogFormat::jsonl}};
@@ -298,6 +302,50 @@ Command add_bench(CLI::App& app, Options& o) {
   return [&o] { return bench(o.bench); };
 }
 
+Command add_export(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("export", "write frames in the formats of other programs");
+  ExportOptions& e = o.export_;
+  add_input(c, e.input);
+  const std::vector<std::string> names = export_format_names();
+  c.add_option("--to", e.format, "format, see below")
+      ->required()
+      ->check(CLI::Validator(
+          [names](std::string& text) -> std::string {
+            if (std::find(names.begin(), names.end(), text) != names.end()) return {};
+            return fmt::format("'{}' is no choice{}", text, suggestion(text, names));
+          },
+          ""))
+      ->type_name(fmt::format("{}", fmt::join(names, "|")));
+  c.add_option("-o,--output", e.output, "folder for the files")->required()->type_name("DIR");
+  auto* const frame = c.add_option("--frame", e.frame, "this frame only, counted from 0; default: every frame")->type_name("K");
+  c.add_option("--frames", e.frames, "from frame A to before frame B")->type_name("A:B")->excludes(frame);
+  c.add_flag("--overwrite", e.overwrite, "replace an earlier export in DIR");
+  add_log_options(c, e.quiet, e.log_format);
+  c.footer(export_format_list() +
+           "\nExamples:\n  jamscope export run/run.h5 --to vtp -o paraview\n"
+           "  jamscope export run/run.h5 --to lammps --frames 10:20 -o ovito\n"
+           "  jamscope export particles.csv contacts.csv --to graphml --frame 3 -o networks");
+  return [&o] { return export_frames(o.export_); };
+}
+
+Command add_completion(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("completion", "print a script that completes commands and options in a shell");
+  c.add_option("SHELL", o.shell, "bash, zsh or fish")
+      ->required()
+      ->check(CLI::Validator(
+          [](std::string& text) -> std::string {
+            if (text == "bash" || text == "zsh" || text == "fish") return {};
+            return fmt::format("'{}' is no choice{}", text, suggestion(text, {"bash", "zsh", "fish"}));
+          },
+          ""))
+      ->type_name("bash|zsh|fish");
+  c.footer("Example, for the shell you are in:\n  source <(jamscope completion bash)");
+  return [&app, &o] {
+    fmt::print("{}", completion_script(app, o.shell));
+    return 0;
+  };
+}
+
 // The table of subcommands, in the order of the help text. To add one: a function like those above and a row here; it
 // adds its options to the parser and returns what is to be done.
 using AddCommand = Command (*)(CLI::App&, Options&);
@@ -305,6 +353,7 @@ constexpr AddCommand commands[] = {
     add_check,
     add_simulate,
     add_analyze,  add_merge, add_inspect, add_metrics, add_follow, add_compare, add_claims, add_bench,
+    add_export, add_completion,
 };
 
 int fail(int code, const std::string& message) {

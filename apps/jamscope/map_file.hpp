@@ -14,4 +14,10 @@ jam::ImportMap read_map_file(const std::string& path);
 // The same from a text; path names it in messages and is the place from which meshes are looked for.
 jam::ImportMap read_map_text(std::string_view text, const std::string& path);
 
+// Writes a map of data in SI units from which read_map_file makes the same one, with the meshes, glued spheres and the case
+// file that it names beside it. how_to_read: the first line, as a comment. Of the ways to say where wall contacts come
+// from, those that an exporter needs (columns, mesh_id, source_name, wall_states) are written. Throws jam::DataError where
+// the disk refuses.
+void write_map_file(const jam::ImportMap& map, const std::string& path, const std::string& how_to_read);
+
 }  // namespace jamscope

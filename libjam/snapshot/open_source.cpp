@@ -4,7 +4,9 @@
 
 #include "libjam/errors.hpp"
 #include "libjam/snapshot/formats/csv.hpp"
+#include "libjam/snapshot/formats/edem.hpp"
 #include "libjam/snapshot/formats/lammps.hpp"
+#include "libjam/snapshot/formats/mercury.hpp"
 #include "libjam/snapshot/reader.hpp"
 
 namespace jam {
@@ -36,6 +38,8 @@ SnapshotSource open_jamscope(const std::vector<InputHead>& inputs, const ImportM
 constexpr SourceFormat formats[] = {
     {"jamscope", "jamscope snapshot files (HDF5)", is_jamscope, open_jamscope},
     {"lammps", "LAMMPS or LIGGGHTS dumps (first line 'ITEM: TIMESTEP') with a map", is_lammps, open_lammps},
+    {"mercury", "MercuryDPM's NAME.data and NAME.fstat", is_mercury, open_mercury},
+    {"edem", "EDEM's text exports (\"TIME\" before each block of queries) with a map", is_edem, open_edem},
     {"csv", "comma separated tables (header frame,time,id,x,y,z,radius ...)", is_csv, open_csv},
 };
 

@@ -15,14 +15,29 @@ namespace {
 
 using RowPair = std::array<std::uint32_t, 2>;
 
-std::uint32_t to_id(const Table& table, std::size_t row, int field) {
+// A whole number from 0 to `most`.
+std::uint64_t to_whole(const Table& table, std::size_t row, int field, std::uint64_t most) {
   const double value = table.at(row, field);
-  if (!(value >= 0 && value <= 4294967295.0) || value != std::floor(value)) {
+  if (!(value >= 0 && value <= static_cast<double>(most)) || value != std::floor(value)) {
     table.fail(row, table.fields[static_cast<std::size_t>(field)] + " is " + std::to_string(value) +
-                        ", expected a whole number from 0 to 4294967295");
+                        ", expected a whole number from 0 to " + std::to_string(most));
   }
-  return static_cast<std::uint32_t>(value);
+  return static_cast<std::uint64_t>(value);
 }
+
+std::uint32_t to_id(const Table& table, std::size_t row, int field) {
+  return static_cast<std::uint32_t>(to_whole(table, row, field, 4294967295U));
+}
+
+constexpr std::uint64_t most_steps = std::uint64_t{1} << 53;  // the last whole number that a double holds with all before it
+constexpr std::uint64_t all_flags = contact_sliding | contact_neck | contact_recovered | contact_merged;
+
+// The columns that contacts with particles and with walls have in common and that are taken as they stand.
+struct RecordedFields {
+  int damping = -1, birth_step = -1, flags = -1;
+  explicit RecordedFields(const Table& table)
+      : damping(table.find("damping")), birth_step(table.find("birth_step")), flags(table.find("flags")) {}
+};
 
 // Particles in double precision, sorted by id.
 struct Bodies {
@@ -70,7 +85,9 @@ std::vector<std::size_t> material_rows(const Table& table, const ImportMap& map)
 Bodies read_bodies(const Table& table, const ImportMap& map, Particles& particles) {
   const std::size_t n = table.rows();
   const int id = table.find("id"), x = table.find("x"), v = table.find("vx"), w = table.find("wx");
-  const int radius = table.find("radius"), diameter = table.find("diameter"), f = table.find("fx");
+  const int radius = table.find("radius"), diameter = table.find("diameter"), volume = table.find("volume"),
+            f = table.find("fx");
+  const int compressive = table.find("compressive_force");
   const double length = map.units.length;
 
   std::vector<ParticleId> ids(n);
@@ -90,7 +107,9 @@ Bodies read_bodies(const Table& table, const ImportMap& map, Particles& particle
     if (!bodies.id.empty() && bodies.id.back() == ids[row]) {
       table.fail(row, "particle " + std::to_string(ids[row]) + " is listed twice in this frame");
     }
-    const double r = length * (radius >= 0 ? table.at(row, radius) : table.at(row, diameter) / 2);
+    const double r = length * (radius >= 0     ? table.at(row, radius)
+                               : diameter >= 0 ? table.at(row, diameter) / 2
+                                               : std::cbrt(table.at(row, volume) * 3 / (4 * std::numbers::pi)));
     if (!(r > 0))
       table.fail(row,
                  "the radius of particle " + std::to_string(ids[row]) + " is " + std::to_string(r) + ", expected > 0");
@@ -107,6 +126,8 @@ Bodies read_bodies(const Table& table, const ImportMap& map, Particles& particle
     if (w >= 0)
       particles.angular_velocity.push_back((map.units.angular_velocity * table.vector_at(row, w)).cast<float>());
     if (!map.materials.empty()) particles.material.push_back(static_cast<std::uint8_t>(material[row]));
+    if (compressive >= 0)
+      particles.compressive_force.push_back(static_cast<float>(map.units.force * table.at(row, compressive)));
   }
   particles.id = bodies.id;
   return bodies;
@@ -163,6 +184,7 @@ void read_pairs(const Table& table, const ImportMap& map, const Bodies& bodies, 
   const int id1 = table.find("id1"), id2 = table.find("id2"), overlap = table.find("overlap"),
             distance = table.find("distance");
   const ForceFields fields(table);
+  const RecordedFields recorded(table);
   const Vec3 period = map.units.length * table.period;
   std::vector<Row> rows;
   rows.reserve(table.rows());
@@ -178,7 +200,8 @@ void read_pairs(const Table& table, const ImportMap& map, const Bodies& bodies, 
                         " times the sum of their radii apart; the ids or the unit of length are wrong");
     }
     const ContactForce force = fields.at(table, r, d / centres, map.units.force);
-    const Vec3 on_a = force.tangential - force.normal_force * d / centres;
+    const double damping = recorded.damping >= 0 ? map.units.force * table.at(r, recorded.damping) : 0;
+    const Vec3 on_a = force.tangential - (force.normal_force + damping) * d / centres;
     residual[a].force -= on_a;
     residual[b].force += on_a;
     residual[a].magnitude += on_a.norm();
@@ -204,20 +227,94 @@ void read_pairs(const Table& table, const ImportMap& map, const Bodies& bodies, 
     contacts.normal_force.push_back(static_cast<float>(row.normal_force));
     if (fields.knows_tangential()) contacts.tangential_force.push_back(row.tangential.cast<float>());
     contacts.overlap.push_back(static_cast<float>(row.overlap));
-    contacts.flags.push_back(row.overlap < 0 ? contact_neck : 0);
+    std::uint64_t flags = row.overlap < 0 ? contact_neck : 0;
+    if (recorded.flags >= 0) flags = to_whole(table, row.source, recorded.flags, all_flags);
+    contacts.flags.push_back(static_cast<std::uint8_t>(flags));
+    if (recorded.damping >= 0)
+      contacts.damping_force.push_back(static_cast<float>(map.units.force * table.at(row.source, recorded.damping)));
+    if (recorded.birth_step >= 0)
+      contacts.birth_step.push_back(to_whole(table, row.source, recorded.birth_step, most_steps));
   }
 }
 
 // What the listed wall contacts know; a column of WallContacts is present when all of them do.
 struct Known {
   bool facet = true, feature = true, point = true, normal = true, tangential = true, overlap = true;
+  bool damping = false, birth_step = false;
 };
+
+// The wall of a row, by the number in the field `mesh` or the place of its name in the field `wall`.
+std::size_t wall_of(const Table& table, std::size_t row, int mesh, int name, const ImportMap& map) {
+  std::size_t wall = 0;
+  if (name >= 0) {
+    wall = static_cast<std::size_t>(table.at(row, name));
+  } else if (mesh >= 0) {
+    const double number = table.at(row, mesh);
+    const auto holds = [&](const ImportWall& w) {
+      return w.mesh_id >= 0 && number >= w.mesh_id && number < double{1} * w.mesh_id + w.mesh_count;
+    };
+    while (wall < map.walls.size() && !holds(map.walls[wall])) ++wall;
+  }
+  if (wall >= map.walls.size())
+    table.fail(row, "mesh " + std::to_string(table.at(row, mesh)) + " is the mesh_id of no wall of the map");
+  return wall;
+}
+
+// Poses, velocities and loads of all walls in one frame.
+void read_wall_states(const Table& table, const ImportMap& map, std::vector<WallState>& states) {
+  const int mesh = table.find("mesh"), name = table.find("wall"), x = table.find("x"), q = table.find("qw");
+  const int v = table.find("vx"), w = table.find("wx"), force = table.find("fx"), torque = table.find("tx");
+  std::vector<char> found(map.walls.size(), 0);
+  for (std::size_t r = 0; r < table.rows(); ++r) {
+    const std::size_t wall = wall_of(table, r, mesh, name, map);
+    if (found[wall]++ != 0) table.fail(r, "the wall " + map.walls[wall].wall.name + " is listed twice in this frame");
+    WallState& state = states[wall] = {};
+    state.position = map.units.length * table.vector_at(r, x);
+    const Eigen::Quaterniond turned(table.at(r, q), table.at(r, q + 1), table.at(r, q + 2), table.at(r, q + 3));
+    if (!(std::abs(turned.norm() - 1) < 1e-3))
+      table.fail(r, "the quaternion has length " + std::to_string(turned.norm()) + ", expected 1");
+    // What was printed with all its digits is left as it is.
+    state.orientation = std::abs(turned.norm() - 1) < 1e-12 ? turned : turned.normalized();
+    if (map.walls[wall].recover &&
+        (!state.position.isZero(0) || std::abs(state.orientation.w()) < 1 - printed_precision)) {
+      table.fail(r, "the wall " + map.walls[wall].wall.name +
+                        " is not at the origin; contacts of walls at rest only can be recovered from the force balance");
+    }
+    if (v >= 0) state.velocity = map.units.velocity * table.vector_at(r, v);
+    if (w >= 0) state.angular_velocity = map.units.angular_velocity * table.vector_at(r, w);
+    if (force >= 0) state.force = map.units.force * table.vector_at(r, force);
+    if (torque >= 0) state.torque = map.units.torque * table.vector_at(r, torque);
+  }
+  for (std::size_t wall = 0; wall < found.size(); ++wall) {
+    if (found[wall] == 0)
+      table.fail(0, "the frame of step " + std::to_string(table.step) + " has no row for the wall " +
+                        map.walls[wall].wall.name);
+  }
+}
 
 void read_wall_list(const Table& table, const ImportMap& map, const RunInfo& info, const std::vector<WallState>& states,
                     const Bodies& bodies, std::vector<WallRecord>& records, Known& known, FrameCheck* check) {
   const int id = table.find("id"), mesh = table.find("mesh"), name = table.find("wall"), facet = table.find("facet");
   const int point = table.find("px"), normal = table.find("nx"), overlap = table.find("overlap");
   const ForceFields fields(table);
+  const RecordedFields recorded(table);
+  const int feature = table.find("feature");
+  known.damping = recorded.damping >= 0;
+  known.birth_step = recorded.birth_step >= 0;
+  // What is known of one wall only is not known, in every frame, whether that wall is touched or not: frames of a run have
+  // the same quantities.
+  for (const ImportWall& entry : map.walls) {
+    const bool numbers = facet >= 0 || (mesh >= 0 && name < 0 && entry.mesh_count > 1);
+    const bool analytic = entry.wall.kind == "plane" || entry.wall.kind == "cylinder";
+    if (entry.recover || !entry.array.empty()) continue;
+    if (entry.wall.kind == "mesh") {
+      if (!numbers) known.facet = false;
+      if (!numbers || point < 0 || entry.wall.triangles.empty()) known.feature = false;
+    }
+    if (point < 0 && !analytic) known.point = false;
+    if (point < 0 && normal < 0 && !analytic) known.normal = false;
+    if (point < 0 && overlap < 0 && !analytic) known.overlap = false;
+  }
   const double length = map.units.length;
   for (std::size_t r = 0; r < table.rows(); ++r) {
     WallRecord record;
@@ -225,20 +322,14 @@ void read_wall_list(const Table& table, const ImportMap& map, const RunInfo& inf
     const Vec3& centre = bodies.position[record.row];
     const double radius = bodies.radius[record.row];
 
-    std::size_t wall = 0;
-    if (name >= 0) {
-      wall = static_cast<std::size_t>(table.at(r, name));
-    } else if (mesh >= 0) {
-      while (wall < map.walls.size() && (map.walls[wall].mesh_id < 0 || map.walls[wall].mesh_id != table.at(r, mesh)))
-        ++wall;
-    }
-    if (wall >= map.walls.size())
-      table.fail(r, "mesh " + std::to_string(table.at(r, mesh)) + " is the mesh_id of no wall of the map");
+    const std::size_t wall = wall_of(table, r, mesh, name, map);
     record.wall = static_cast<std::uint8_t>(wall);
     const Wall& shape = info.walls[wall];
 
-    if (facet >= 0) {
-      record.facet = to_id(table, r, facet);
+    const bool numbered = facet < 0 && mesh >= 0 && name < 0 && map.walls[wall].mesh_count > 1;
+    if (facet >= 0 || numbered) {
+      record.facet = facet >= 0 ? to_id(table, r, facet)
+                                : static_cast<std::uint32_t>(table.at(r, mesh) - map.walls[wall].mesh_id);
       if (!shape.triangles.empty() && record.facet >= shape.triangles.size()) {
         table.fail(r, "triangle " + std::to_string(record.facet) + ", but the mesh of wall " + shape.name + " has " +
                           std::to_string(shape.triangles.size()));
@@ -263,11 +354,15 @@ void read_wall_list(const Table& table, const ImportMap& map, const RunInfo& inf
       const Vec3 n = table.vector_at(r, normal);
       if (!(std::abs(n.norm() - 1) < 1e-3))
         table.fail(r, "the normal has length " + std::to_string(n.norm()) + ", expected 1");
-      record.normal = n.normalized();
+      // A unit vector of 32-bit numbers is left as it was recorded.
+      record.normal = std::abs(n.norm() - 1) < 2e-7 ? n : n.normalized();
       has_normal = true;
     }
     if (shape.kind != "mesh" && (point < 0 || !has_normal)) {
-      const Nearest nearest = nearest_point(shape, centre);
+      const WallState& state = states[wall];
+      Nearest nearest = nearest_point(shape, state.orientation.conjugate() * (centre - state.position));
+      nearest.point = state.position + state.orientation * nearest.point;
+      nearest.normal = state.orientation * nearest.normal;
       if (std::isfinite(nearest.distance)) {
         if (point < 0) record.point = nearest.point;
         if (!has_normal) record.normal = nearest.normal;
@@ -288,8 +383,8 @@ void read_wall_list(const Table& table, const ImportMap& map, const RunInfo& inf
     if (overlap >= 0) record.overlap = length * table.at(r, overlap);
     if (!fields.knows_tangential()) known.tangential = false;
     if (shape.kind == "mesh") {
-      if (facet < 0) known.facet = false;
-      if (facet >= 0 && point >= 0 && !shape.triangles.empty()) {
+      if (facet < 0 && !numbered) known.facet = false;
+      if ((facet >= 0 || numbered) && point >= 0 && !shape.triangles.empty()) {
         const Vec3 body = states[wall].orientation.conjugate() * (record.point - states[wall].position);
         const NearestOnTriangle nearest = nearest_on_triangle(shape, record.facet, body, 1e-3 * radius);
         record.feature = static_cast<std::uint8_t>(nearest.feature);
@@ -302,13 +397,24 @@ void read_wall_list(const Table& table, const ImportMap& map, const RunInfo& inf
         known.feature = false;
       }
     }
+    if (feature >= 0) record.feature = static_cast<std::uint8_t>(to_whole(table, r, feature, 2));
+    if (known.damping) record.damping_force = map.units.force * table.at(r, recorded.damping);
+    if (known.birth_step) record.birth_step = to_whole(table, r, recorded.birth_step, most_steps);
+    if (recorded.flags >= 0) {
+      record.flags = static_cast<std::uint8_t>(to_whole(table, r, recorded.flags, all_flags));
+      record.flags_known = true;
+    }
     records.push_back(record);
   }
+  if (feature >= 0) known.feature = true;
 }
 
 void read_wall_arrays(const Table& table, const ImportMap& map, const Bodies& bodies, std::vector<WallRecord>& records,
                       Known& known) {
   const int id = table.find("id");
+  for (const ImportWall& entry : map.walls) {
+    if (!entry.array.empty() && entry.wall.kind == "mesh") known.facet = known.feature = false;
+  }
   for (std::size_t r = 0; r < table.rows(); ++r) {
     int field = 1;
     for (std::size_t wall = 0; wall < map.walls.size(); ++wall) {
@@ -336,7 +442,6 @@ void read_wall_arrays(const Table& table, const ImportMap& map, const Bodies& bo
       record.normal_force = -force.dot(record.normal);
       record.tangential_force = force + record.normal_force * record.normal;
       record.overlap = radius - distance;
-      if (map.walls[wall].wall.kind == "mesh") known.facet = known.feature = false;
       records.push_back(record);
     }
   }
@@ -353,7 +458,9 @@ void store(const std::vector<WallRecord>& records, const Known& known, WallConta
     if (known.normal) contacts.normal.push_back(record.normal.cast<float>());
     if (known.tangential) contacts.tangential_force.push_back(record.tangential_force.cast<float>());
     if (known.overlap) contacts.overlap.push_back(static_cast<float>(record.overlap));
-    const bool neck = known.overlap && record.overlap < 0;
+    if (known.damping) contacts.damping_force.push_back(static_cast<float>(record.damping_force));
+    if (known.birth_step) contacts.birth_step.push_back(record.birth_step);
+    const bool neck = !record.flags_known && known.overlap && record.overlap < 0;
     contacts.flags.push_back(static_cast<std::uint8_t>(record.flags | (neck ? contact_neck : 0)));
   }
 }
@@ -379,20 +486,29 @@ void need(const ColumnMap& columns, const std::vector<std::string>& any_of, cons
 const std::vector<std::string>& known_particle_fields() {
   static const std::vector<std::string> names{"frame",  "time",     "id",       "x",  "y",  "z",
                                               "radius", "diameter", "vx",       "vy", "vz", "wx",
-                                              "wy",     "wz",       "material", "fx", "fy", "fz"};
+                                              "wy",     "wz",       "material", "fx", "fy", "fz",
+                                              "compressive_force", "volume"};
   return names;
 }
 
 const std::vector<std::string>& known_pair_fields() {
   static const std::vector<std::string> names{"frame", "id1", "id2",  "f_x",  "f_y",  "f_z",     "fn_x",    "fn_y",
-                                              "fn_z",  "fn",  "ft_x", "ft_y", "ft_z", "overlap", "distance"};
+                                              "fn_z",  "fn",  "ft_x", "ft_y", "ft_z", "overlap", "distance",
+                                              "damping", "birth_step", "flags"};
   return names;
 }
 
 const std::vector<std::string>& known_wall_fields() {
   static const std::vector<std::string> names{"frame", "id",   "mesh", "wall", "facet", "f_x",    "f_y",  "f_z",
                                               "fn_x",  "fn_y", "fn_z", "fn",   "ft_x",  "ft_y",   "ft_z", "px",
-                                              "py",    "pz",   "nx",   "ny",   "nz",    "overlap"};
+                                              "py",    "pz",   "nx",   "ny",   "nz",    "overlap", "damping",
+                                              "birth_step", "flags", "feature"};
+  return names;
+}
+
+const std::vector<std::string>& known_wall_state_fields() {
+  static const std::vector<std::string> names{"frame", "mesh", "wall", "x",  "y",  "z",  "qw", "qx", "qy", "qz", "vx",
+                                              "vy",    "vz",   "wx",   "wy", "wz", "fx", "fy", "fz", "tx", "ty", "tz"};
   return names;
 }
 
@@ -422,7 +538,7 @@ void check_map(const ImportMap& map) {
   ordered_fields(map.particles.columns, known_particle_fields(), origin + ": particles");
   need(map.particles.columns, {"id"}, "particles", origin);
   need(map.particles.columns, {"x"}, "particles", origin);
-  need(map.particles.columns, {"radius", "diameter"}, "particles", origin);
+  need(map.particles.columns, {"radius", "diameter", "volume"}, "particles", origin);
   if (map.pair_contacts.used()) {
     ordered_fields(map.pair_contacts.columns, known_pair_fields(), origin + ": pair_contacts");
     need(map.pair_contacts.columns, {"id1"}, "pair_contacts", origin);
@@ -437,6 +553,12 @@ void check_map(const ImportMap& map) {
     if (map.walls.size() > 1) need(map.wall_contacts.columns, {"mesh", "wall"}, "wall_contacts", origin);
   }
   if (map.wall_arrays.used()) need(map.wall_arrays.columns, {"id"}, "wall_arrays", origin);
+  if (map.wall_states.used()) {
+    ordered_fields(map.wall_states.columns, known_wall_state_fields(), origin + ": wall_states");
+    if (map.walls.size() > 1) need(map.wall_states.columns, {"mesh", "wall"}, "wall_states", origin);
+    for (const char* field : {"x", "qw", "qx", "qy", "qz"})
+      need(map.wall_states.columns, {field}, "wall_states", origin);
+  }
   if (map.wall_loads.used()) {
     for (const char* field : {"time", "fx", "fy", "fz", "tx", "ty", "tz"})
       need(map.wall_loads.columns, {field}, "wall_loads", origin);
@@ -452,11 +574,14 @@ void check_map(const ImportMap& map) {
     const std::string name = "wall " + wall.name;
     if (wall.name.empty()) throw DataError(origin + ": a wall has no name");
     if (!names.insert(wall.name).second) throw DataError(origin + ": two walls are called " + wall.name);
-    if (wall.kind != "plane" && wall.kind != "cylinder" && wall.kind != "mesh") {
-      throw DataError(origin + ": " + name + " is of kind '" + wall.kind + "', expected plane, cylinder or mesh");
+    if (wall.kind != "plane" && wall.kind != "cylinder" && wall.kind != "cone" && wall.kind != "disc" &&
+        wall.kind != "spheres" && wall.kind != "mesh") {
+      throw DataError(origin + ": " + name + " is of kind '" + wall.kind +
+                      "', expected plane, cylinder, cone, disc, spheres or mesh");
     }
-    if (wall.kind == "cylinder") positive(wall.radius, name + ": radius");
-    if (wall.kind != "mesh" && !(wall.axis.norm() > 0))
+    if (entry.mesh_count < 1) throw DataError(origin + ": " + name + " has a mesh_count below 1");
+    if (wall.kind == "cylinder" || wall.kind == "disc") positive(wall.radius, name + ": radius");
+    if (wall.kind != "mesh" && wall.kind != "spheres" && !(wall.axis.norm() > 0))
       throw DataError(origin + ": " + name + " has a zero normal or axis");
     finite(wall.point, name + ": point");
     finite(wall.axis, name + ": axis");
@@ -477,9 +602,9 @@ void check_map(const ImportMap& map) {
       throw DataError(origin + ": " + name + " is of material '" + wall.material +
                       "', which the map does not describe");
     }
-    if (entry.recover && wall.kind == "mesh") {
-      throw DataError(origin + ": " + name +
-                      " is a mesh; only planes and cylinders can be recovered from the force balance");
+    if (entry.recover && wall.kind != "plane" && wall.kind != "cylinder") {
+      throw DataError(origin + ": " + name + " is a " + wall.kind +
+                      "; only planes and cylinders can be recovered from the force balance");
     }
     if (entry.recover && (entry.velocity.norm() > 0 || entry.angular_velocity.norm() > 0)) {
       throw DataError(origin + ": " + name + " moves; only walls at rest can be recovered from the force balance");
@@ -528,9 +653,11 @@ RunInfo run_info(const ImportMap& map) {
   info.dt = map.dt;
   for (const ImportMaterial& material : map.materials) info.materials.push_back(material.material);
   info.interactions = map.interactions;
+  info.case_toml = map.case_toml;
+  info.case_sha256 = map.case_sha256;
   for (const ImportWall& wall : map.walls) {
     info.walls.push_back(wall.wall);
-    info.walls.back().axis.normalize();
+    if (std::abs(wall.wall.axis.norm() - 1) > 1e-12) info.walls.back().axis.normalize();
   }
   info.gap = map.gap;
   if (info.gap.tip_radius == 0) {
@@ -563,6 +690,8 @@ Snapshot assemble(const FrameTables& tables, const ImportMap& map, const RunInfo
   snapshot.time = tables.time;
   snapshot.step = tables.particles.step;
   for (const ImportWall& wall : map.walls) snapshot.walls.push_back(wall_state(wall, tables.time));
+  if (tables.wall_states) read_wall_states(*tables.wall_states, map, snapshot.walls);
+  const bool loads_listed = tables.wall_states && tables.wall_states->has("fx") && tables.wall_states->has("tx");
   const Bodies bodies = read_bodies(tables.particles, map, snapshot.particles);
   const std::size_t n = bodies.id.size();
 
@@ -585,11 +714,11 @@ Snapshot assemble(const FrameTables& tables, const ImportMap& map, const RunInfo
   };
   std::stable_sort(records.begin(), records.end(), by_place);
   for (const WallRecord& record : records) {
-    const Vec3 force = record.tangential_force - record.normal_force * record.normal;
+    const Vec3 force = record.tangential_force - (record.normal_force + record.damping_force) * record.normal;
     residual[record.row].force -= force;
     residual[record.row].magnitude += force.norm();
   }
-  if (known.point && known.normal) merge_shared_edges(records, info.walls, snapshot.walls, bodies.radius);
+  if (known.point && known.normal && !map.one_record_a_touch) merge_shared_edges(records, info.walls, snapshot.walls, bodies.radius);
 
   std::vector<char> touches(n, 0);
   const bool balance_known = bodies.has_force && bodies.has_mass && tables.pairs && known.tangential;
@@ -599,17 +728,17 @@ Snapshot assemble(const FrameTables& tables, const ImportMap& map, const RunInfo
   }
   store(records, known, snapshot.pw);
 
-  if (known.normal) {
+  if (known.normal && !loads_listed) {
     for (const WallRecord& record : records) {
       WallState& wall = snapshot.walls[record.wall];
-      const Vec3 on_wall = record.normal_force * record.normal - record.tangential_force;
+      const Vec3 on_wall = (record.normal_force + record.damping_force) * record.normal - record.tangential_force;
       wall.force += on_wall;
       if (known.point) wall.torque += (record.point - wall.position).cross(on_wall);
     }
   }
 
   if (check != nullptr) {
-    check->loads_known = (tables.walls || tables.arrays) && known.normal && known.tangential;
+    check->loads_known = loads_listed || ((tables.walls || tables.arrays) && known.normal && known.tangential);
     double radii = 0;
     for (const double r : bodies.radius) radii += r;
     check->mean_radius = n > 0 ? radii / static_cast<double>(n) : 0;

@@ -13,7 +13,7 @@ namespace jam {
 struct FrameTables {
   double time = 0;  // s
   Table particles;
-  std::optional<Table> pairs, walls, arrays;
+  std::optional<Table> pairs, walls, arrays, wall_states;
 };
 
 // What a frame says about its map: numbers that a wrong unit, density, gravity or wall motion would spoil.
@@ -27,13 +27,14 @@ struct FrameCheck {
   std::size_t points = 0;
   double largest_point_error = 0;  // m
   double mean_radius = 0;          // m
-  bool loads_known = false;        // the wall contacts give the whole force on the walls
+  bool loads_known = false;        // the whole force on the walls is listed, or given by their contacts
 };
 
 // Known fields of every kind of table, in the order in which ordered_fields puts them.
 const std::vector<std::string>& known_particle_fields();
 const std::vector<std::string>& known_pair_fields();
 const std::vector<std::string>& known_wall_fields();
+const std::vector<std::string>& known_wall_state_fields();
 
 // Throws DataError (naming the map's origin) where the map contradicts itself: unknown or missing fields, walls of the
 // same name, numbers that are not positive, recovered walls without an equation or without total forces.
@@ -48,7 +49,7 @@ std::vector<Field> array_fields(const ImportMap& map);
 
 // Throws DataError naming file, line and value: duplicate or missing particles, contacts of a particle with itself,
 // pairs listed twice or much too far apart, unknown walls, facets that the mesh has not. Loads on walls are the sums
-// over the frame's contacts, with minus sign, torques about the wall's position.
+// over the frame's contacts, with minus sign, torques about the wall's position, unless they are listed.
 Snapshot assemble(const FrameTables& tables, const ImportMap& map, const RunInfo& info, FrameCheck* check = nullptr);
 
 }  // namespace jam

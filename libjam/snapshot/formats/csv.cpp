@@ -47,7 +47,12 @@ const std::vector<Kind>& kinds() {
                                        "wall_contacts",
                                        &ImportMap::wall_contacts,
                                        {"frame", "id", "wall", "fn"},
-                                       known_wall_fields}};
+                                       known_wall_fields},
+                                      {TableKind::wall_states,
+                                       "wall_states",
+                                       &ImportMap::wall_states,
+                                       {"frame", "wall", "x", "y", "z", "qw", "qx", "qy", "qz"},
+                                       known_wall_state_fields}};
   return list;
 }
 
@@ -161,8 +166,12 @@ SnapshotSource open_csv(const std::vector<InputHead>& inputs, const ImportMap* g
   }
   if (map.walls.empty()) {
     for (const Input& input : sorted) {
-      if (input.kind->kind != TableKind::wall_contacts) continue;
-      for (const std::string& name : words_of(input.head->path, input.columns.at("wall"))) {
+      if (input.kind->kind != TableKind::wall_contacts && input.kind->kind != TableKind::wall_states) continue;
+      const auto column = input.columns.find("wall");
+      if (column == input.columns.end()) continue;
+      for (const std::string& name : words_of(input.head->path, column->second)) {
+        if (std::any_of(map.walls.begin(), map.walls.end(), [&](const ImportWall& w) { return w.wall.name == name; }))
+          continue;
         ImportWall wall;
         wall.wall.name = name;
         wall.wall.kind = "mesh";
@@ -180,14 +189,16 @@ SnapshotSource open_csv(const std::vector<InputHead>& inputs, const ImportMap* g
     if (input.kind->kind == TableKind::particles) map.particles.columns = input.columns;
     if (input.kind->kind == TableKind::pair_contacts) map.pair_contacts.columns = input.columns;
     if (input.kind->kind == TableKind::wall_contacts && !map.walls.empty()) map.wall_contacts.columns = input.columns;
-    files.push_back(
-        {input.kind->kind, input.head->path, ordered_fields(input.columns, input.kind->known(), name_of(input))});
+    if (input.kind->kind == TableKind::wall_states && !map.walls.empty()) map.wall_states.columns = input.columns;
+    const std::vector<Field> fields = ordered_fields(input.columns, input.kind->known(), name_of(input));
+    files.push_back({input.kind->kind, input.head->path, fields,
+                     open_frames<CsvReader>(input.head->path, fields, wall_words(map))});
   }
   if (std::none_of(files.begin(), files.end(), [](const TableFile& f) { return f.kind == TableKind::particles; })) {
     throw DataError(inputs.front().path + ": none of the inputs holds particles (header frame,time,id,x,y,z,radius)");
   }
   check_map(map);
-  SnapshotSource source = open_tables(FrameCursor::Syntax::csv, files, map, true, "");
+  SnapshotSource source = open_tables(files, map, true, "");
   if (ignored_material)
     source.warnings.push_back("the column 'material' is ignored: no map says what the materials are");
   return source;

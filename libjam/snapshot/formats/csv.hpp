@@ -3,6 +3,7 @@
 //   particles.csv      frame,time,id,x,y,z,radius      and as wanted  vx,vy,vz,wx,wy,wz,material,fx,fy,fz
 //   contacts.csv       frame,id1,id2,fn                and as wanted  ft_x,ft_y,ft_z,overlap
 //   wall_contacts.csv  frame,id,wall,fn                and as wanted  px,py,pz,nx,ny,nz,ft_x,ft_y,ft_z,facet,overlap
+//   walls.csv          frame,wall,x,y,z,qw,qx,qy,qz    and as wanted  vx,vy,vz,wx,wy,wz,fx,fy,fz,tx,ty,tz; may be absent
 //
 // Files are told apart by these headers, not by their names. SI units. Rows of a frame stand together, frames count up;
 // a frame without contacts has no rows. Signs as in snapshot.hpp: fn > 0 repulsive, ft on id1 or on the particle, n

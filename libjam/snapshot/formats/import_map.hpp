@@ -19,13 +19,18 @@ struct ImportUnits {
 };
 
 // Name of a field -> name of the column that holds it. Known fields, (r) = required:
-//   particles      id(r) x(r) y(r) z(r), radius or diameter(r), vx vy vz, wx wy wz, material, fx fy fz (total force)
+//   particles      id(r) x(r) y(r) z(r), radius or diameter or volume(r), vx vy vz, wx wy wz, material, fx fy fz (total
+//                  force), compressive_force
 //   pair_contacts  id1(r) id2(r); the force on id1 as f_x f_y f_z (all of it) or its normal part fn_x fn_y fn_z or fn
-//                  (a number, > 0 repulsive)(r); ft_x ft_y ft_z (on id1), overlap or distance (of the centres)
+//                  (a number, > 0 repulsive)(r); ft_x ft_y ft_z (on id1), overlap or distance (of the centres), damping
+//                  (the dissipative part of the normal force, where the column of fn leaves it out), birth_step, flags
+//                  (the sum of those of ContactFlag)
 //   wall_contacts  id(r); the force on the particle as f_x.. or fn_x.. or fn(r), ft_x ft_y ft_z; mesh (a number, see
 //                  ImportWall::mesh_id) or wall (a name), facet (triangle), px py pz (contact point), nx ny nz (from
-//                  the particle to the wall), overlap
+//                  the particle to the wall), overlap, damping, birth_step, flags, feature (WallFeature)
 //   wall_arrays    id(r)
+//   wall_states    mesh or wall(r); x y z(r) of the wall's origin, qw qx qy qz(r) from its frame to the laboratory's,
+//                  vx vy vz, wx wy wz; fx fy fz and tx ty tz on the wall, about its origin; a row a wall in every frame
 //   wall_loads     time(r) fx(r) fy(r) fz(r) tx(r) ty(r) tz(r), on the wall
 // csv files also have frame(r), and their particles time.
 using ColumnMap = std::map<std::string, std::string>;
@@ -44,12 +49,16 @@ struct ImportWall {
   // Mesh walls of `wall_contacts`: the number in the column `mesh`, or the text in the column `wall` (default:
   // wall.name).
   int mesh_id = -1;
+  // So many numbers from mesh_id on belong to this wall, one a triangle, in the order of its mesh (codes that number
+  // triangles as walls of their own).
+  int mesh_count = 1;
   std::string source_name;
   // Walls recorded as one group of columns a particle (LAMMPS `fix wall/gran ... contacts`): the columns are
   // array[1..8] = flag, force on the particle, contact point, radius. Empty: not recorded so.
   std::string array;
-  // Motion: rigid, with constant velocity and angular velocity from `motion_start` on. The angular velocity is about an
-  // axis through the body frame's origin, which is at `position` (with the identity orientation) until then.
+  // Motion, where there is no table `wall_states`: rigid, with constant velocity and angular velocity from
+  // `motion_start` on. The angular velocity is about an axis through the body frame's origin, which is at `position`
+  // (with the identity orientation) until then.
   Vec3 position = Vec3::Zero();          // m
   Vec3 velocity = Vec3::Zero();          // m/s
   Vec3 angular_velocity = Vec3::Zero();  // rad/s
@@ -70,18 +79,22 @@ struct ImportMaterial {
 
 struct ImportMap {
   std::string origin;             // file that this map was read from, for messages; may be empty
-  std::string format = "lammps";  // "lammps" (dump custom and dump local; also LIGGGHTS) or "csv"
+  std::string format = "lammps";  // a name in the table of open_source.cpp
   std::string creator;            // the code that made the data, for provenance
   double dt = 0;                  // s per step: time = step * dt; dumps that carry ITEM: TIME do without
   Vec3 gravity{0, 0, -9.81};      // m/s^2
   ImportUnits units;
-  ImportTable particles, pair_contacts, wall_contacts, wall_arrays, wall_loads;
+  ImportTable particles, pair_contacts, wall_contacts, wall_arrays, wall_states, wall_loads;
   std::vector<ImportWall> walls;
   std::vector<ImportMaterial> materials;
   std::vector<std::vector<Interaction>> interactions;  // [M][M] in the order of `materials`, or empty
   Gap gap;
   // Particles farther than this times their radius from an analytic wall do not touch it when forces are recovered.
   double touch_tolerance = 1e-3;
+  // The source lists each touch of a mesh once; else records of one edge are made one, see merge_shared_edges.
+  bool one_record_a_touch = false;
+  // The case file that the data come from, whose [analysis] then holds for them, and its SHA-256; or empty.
+  std::string case_toml, case_sha256;
 };
 
 }  // namespace jam

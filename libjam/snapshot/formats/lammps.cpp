@@ -28,6 +28,7 @@ std::vector<Candidate> candidates(const ImportMap& map) {
   add(TableKind::particles, "particles", map.particles, known_particle_fields());
   add(TableKind::pair_contacts, "pair_contacts", map.pair_contacts, known_pair_fields());
   add(TableKind::wall_contacts, "wall_contacts", map.wall_contacts, known_wall_fields());
+  add(TableKind::wall_states, "wall_states", map.wall_states, known_wall_state_fields());
   if (map.wall_arrays.used())
     list.push_back({TableKind::wall_arrays, "wall_arrays", map.wall_arrays.file, array_fields(map)});
   return list;
@@ -71,7 +72,7 @@ TableFile sort_in(const InputHead& head, const std::vector<Candidate>& list) {
   if (tie)
     throw DataError(head.path +
                     ": fits two tables of the map equally well; tell them apart by `file`, a part of the file name");
-  return {best->kind, head.path, best->fields};
+  return {best->kind, head.path, best->fields, open_frames<DumpReader>(head.path, best->fields)};
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ SnapshotSource open_lammps(const std::vector<InputHead>& inputs, const ImportMap
                       " (columns " + columns + ")");
     }
   }
-  return open_tables(FrameCursor::Syntax::dump, files, *map, false, load_series);
+  return open_tables(files, *map, false, load_series);
 }
 
 }  // namespace jam

@@ -46,7 +46,8 @@ int Table::find(std::string_view field) const {
 }
 
 void Table::fail(std::size_t row, const std::string& problem) const {
-  throw DataError(path + ":" + std::to_string(first_line + row) + ": " + problem);
+  const std::size_t line = row < lines.size() ? lines[row] : first_line + row;
+  throw DataError(path + ":" + std::to_string(line) + ": " + problem);
 }
 
 std::vector<Field> ordered_fields(const ColumnMap& columns, const std::vector<std::string>& known,
@@ -267,49 +268,34 @@ std::optional<Table> CsvReader::next(bool with_rows) {
   return table;
 }
 
-FrameCursor::FrameCursor(Syntax syntax, std::string path, std::vector<Field> fields, std::vector<std::string> words)
-    : syntax_(syntax), path_(std::move(path)), fields_(std::move(fields)), words_(std::move(words)) {
-  rewind();
-  const auto advance = [&]() -> std::optional<Table> {
-    if (auto* dump = std::get_if<DumpReader>(&reader_)) return dump->next(false);
-    return std::get<CsvReader>(reader_).next(false);
-  };
-  while (const std::optional<Table> table = advance()) {
+FrameCursor::FrameCursor(std::string path, OpenFrames open) : path_(std::move(path)), open_(std::move(open)) {
+  reader_ = open_();
+  while (const std::optional<Table> table = reader_(false)) {
     if (!marks_.empty() && table->step <= marks_.back().step) {
       table->fail(0, "step " + std::to_string(table->step) + " comes after step " + std::to_string(marks_.back().step) +
                          ", expected increasing steps");
     }
     marks_.push_back({table->step, table->time});
   }
-  reader_ = std::monostate{};  // closes the file until it is read
-}
-
-void FrameCursor::rewind() {
-  next_ = 0;
-  if (syntax_ == Syntax::dump) {
-    reader_.emplace<DumpReader>(path_, fields_);
-  } else {
-    reader_.emplace<CsvReader>(path_, fields_, words_);
-  }
+  reader_ = nullptr;  // closes the file until it is read
 }
 
 Table FrameCursor::read(std::size_t frame) {
   if (frame >= marks_.size()) throw DataError(path_ + ": there is no frame " + std::to_string(frame));
-  const auto advance = [&](bool with_rows) -> std::optional<Table> {
-    if (auto* dump = std::get_if<DumpReader>(&reader_)) return dump->next(with_rows);
-    return std::get<CsvReader>(reader_).next(with_rows);
-  };
   try {
-    if (std::holds_alternative<std::monostate>(reader_) || frame < next_) rewind();
-    for (; next_ < frame; ++next_) {
-      if (!advance(false)) throw DataError(path_ + ": the file became shorter while it was read");
+    if (!reader_ || frame < next_) {
+      reader_ = open_();
+      next_ = 0;
     }
-    std::optional<Table> table = advance(true);
+    for (; next_ < frame; ++next_) {
+      if (!reader_(false)) throw DataError(path_ + ": the file became shorter while it was read");
+    }
+    std::optional<Table> table = reader_(true);
     if (!table || table->step != marks_[frame].step) throw DataError(path_ + ": the file changed while it was read");
     ++next_;
     return std::move(*table);
   } catch (...) {
-    reader_ = std::monostate{};  // the place in the file is lost
+    reader_ = nullptr;  // the place in the file is lost
     throw;
   }
 }

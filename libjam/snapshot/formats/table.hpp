@@ -5,11 +5,12 @@
 // beginning. So memory holds one frame whatever the size of the file, at the price of decompressing twice.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "libjam/snapshot/formats/import_map.hpp"
@@ -24,6 +25,7 @@ struct Table {
   double time = std::numeric_limits<double>::quiet_NaN();  // where the file has it
   Vec3 period = Vec3::Zero();                              // of the box, per direction; 0: not periodic
   std::size_t first_line = 0;                              // of the first row in the file
+  std::vector<std::size_t> lines;                          // of each row, where rows do not follow each other
   std::vector<std::string> fields;
   std::vector<double> values;  // [rows][fields]
 
@@ -82,31 +84,40 @@ class CsvReader {
   bool pending_ = false;  // row_ belongs to the next frame
 };
 
+// Reads one file forward: the next frame, without its rows when `with_rows` is false; nothing at the end of the file.
+using FrameReader = std::function<std::optional<Table>(bool with_rows)>;
+// Begins a file anew.
+using OpenFrames = std::function<FrameReader()>;
+
+// For readers that have next(with_rows), as those above.
+template <class Reader, class... Arguments>
+OpenFrames open_frames(Arguments... arguments) {
+  return [=] {
+    const auto reader = std::make_shared<Reader>(arguments...);
+    return [reader](bool with_rows) { return reader->next(with_rows); };
+  };
+}
+
 // A file with its frames found; movable, not to be shared between threads.
 class FrameCursor {
  public:
-  enum class Syntax { dump, csv };
   struct Mark {
     std::uint64_t step;
     double time;  // in the file's unit, NaN where the file has none
   };
 
   // Reads the whole file once. Throws DataError for broken syntax, a cut stream, and steps that do not increase.
-  FrameCursor(Syntax syntax, std::string path, std::vector<Field> fields, std::vector<std::string> words = {});
+  FrameCursor(std::string path, OpenFrames open);
   const std::vector<Mark>& marks() const { return marks_; }
   const std::string& path() const { return path_; }
   Table read(std::size_t frame);
 
  private:
-  void rewind();
-
-  Syntax syntax_;
   std::string path_;
-  std::vector<Field> fields_;
-  std::vector<std::string> words_;
+  OpenFrames open_;
   std::vector<Mark> marks_;
   std::size_t next_ = 0;
-  std::variant<std::monostate, DumpReader, CsvReader> reader_;
+  FrameReader reader_;  // empty: the file is not open
 };
 
 // The column names of the first frame of a dump ("ITEM: ATOMS id type ..."), empty where the head is no dump.

@@ -13,7 +13,8 @@
 namespace jam {
 namespace {
 
-constexpr std::array<const char*, 4> kind_names{"particles", "pair_contacts", "wall_contacts", "wall_arrays"};
+constexpr std::array<const char*, 5> kind_names{"particles", "pair_contacts", "wall_contacts", "wall_arrays",
+                                                "wall_states"};
 
 std::string short_number(double value) {
   char text[32];
@@ -32,8 +33,8 @@ struct Frames {
   ImportMap map;
   RunInfo info;
   std::vector<FrameCursor> cursors;
-  std::array<std::vector<Place>, 4> places;  // by kind, in order of step
-  std::array<std::vector<std::string>, 4> fields;
+  std::array<std::vector<Place>, kind_names.size()> places;  // by kind, in order of step
+  std::array<std::vector<std::string>, kind_names.size()> fields;
   std::vector<double> time;
 
   std::optional<Table> table(TableKind kind, std::uint64_t step) {
@@ -60,6 +61,7 @@ struct Frames {
     tables.pairs = table(TableKind::pair_contacts, list[frame].step);
     tables.walls = table(TableKind::wall_contacts, list[frame].step);
     tables.arrays = table(TableKind::wall_arrays, list[frame].step);
+    tables.wall_states = table(TableKind::wall_states, list[frame].step);
     Snapshot snapshot = assemble(tables, map, info, check);
     validate(snapshot, info, tables.particles.path + ":step " + std::to_string(list[frame].step));
     return snapshot;
@@ -73,18 +75,28 @@ void match_steps(const Frames& frames, bool empty_frames_absent) {
   };
   const std::vector<Place>& particles = frames.places[0];
   const std::string particle_path = frames.cursors[particles.front().cursor].path();
-  for (std::size_t kind = 1; kind < 4; ++kind) {
+  for (std::size_t kind = 1; kind < kind_names.size(); ++kind) {
     const std::vector<Place>& list = frames.places[kind];
     if (list.empty()) continue;
     const std::string path = frames.cursors[list.front().cursor].path();
     for (const Place& place : list) {
+      const auto same = std::lower_bound(particles.begin(), particles.end(), place.step,
+                                         [](const Place& p, std::uint64_t step) { return p.step < step; });
+      if (same != particles.end() && same->step == place.step && !std::isnan(same->time) && !std::isnan(place.time) &&
+          std::abs(same->time - place.time) > 1e-5 * std::abs(same->time)) {
+        throw DataError(frames.cursors[place.cursor].path() + ": frame " + std::to_string(place.step) + " is at time " +
+                        short_number(place.time) + ", that of the particles in " + particle_path + " at " +
+                        short_number(same->time) + "; expected the same times in both");
+      }
       if (!has(particles, place.step)) {
         throw DataError(frames.cursors[place.cursor].path() + ": has step " + std::to_string(place.step) +
                         ", which the particles in " + particle_path + " have not; expected the same steps in both");
       }
     }
     for (const Place& place : particles) {
-      if (!empty_frames_absent && !has(list, place.step)) {
+      // Walls have a state in every frame, contacts may have none.
+      const bool may_lack = empty_frames_absent && kind != static_cast<std::size_t>(TableKind::wall_states);
+      if (!may_lack && !has(list, place.step)) {
         throw DataError(path + ": lacks step " + std::to_string(place.step) + " of the particles in " + particle_path +
                         "; expected the same steps in both");
       }
@@ -172,24 +184,28 @@ Series read_load_series(const std::string& path, const ImportMap& map) {
   return series;
 }
 
-SnapshotSource open_tables(FrameCursor::Syntax syntax, const std::vector<TableFile>& files, const ImportMap& map,
-                           bool empty_frames_absent, const std::string& load_series) {
-  const auto frames = std::make_shared<Frames>();
-  frames->map = map;
-  frames->info = run_info(map);
+std::vector<std::string> wall_words(const ImportMap& map) {
   std::vector<std::string> words;
   for (const ImportWall& wall : map.walls)
     words.push_back(wall.source_name.empty() ? wall.wall.name : wall.source_name);
+  return words;
+}
+
+SnapshotSource open_tables(const std::vector<TableFile>& files, const ImportMap& map, bool empty_frames_absent,
+                           const std::string& load_series) {
+  const auto frames = std::make_shared<Frames>();
+  frames->map = map;
+  frames->info = run_info(map);
   for (const TableFile& file : files) {
     const std::size_t kind = static_cast<std::size_t>(file.kind), cursor = frames->cursors.size();
-    frames->cursors.emplace_back(syntax, file.path, file.fields, words);
+    frames->cursors.emplace_back(file.path, file.open);
     const std::vector<FrameCursor::Mark>& marks = frames->cursors.back().marks();
     for (std::size_t f = 0; f < marks.size(); ++f)
       frames->places[kind].push_back({marks[f].step, marks[f].time, cursor, f});
     for (const Field& field : file.fields) frames->fields[kind].push_back(field.name);
     if (frames->fields[kind].size() > file.fields.size()) frames->fields[kind].resize(file.fields.size());
   }
-  for (std::size_t kind = 0; kind < 4; ++kind) {
+  for (std::size_t kind = 0; kind < kind_names.size(); ++kind) {
     std::vector<Place>& list = frames->places[kind];
     std::stable_sort(list.begin(), list.end(), [](const Place& a, const Place& b) { return a.step < b.step; });
     for (std::size_t k = 1; k < list.size(); ++k) {

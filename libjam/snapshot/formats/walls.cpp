@@ -43,12 +43,13 @@ bool same_touch(const WallRecord& a, const WallRecord& b, const Wall& wall, cons
 
 WallRecord merged(const std::vector<const WallRecord*>& parts) {
   WallRecord sum = *parts.front();
-  Vec3 force = Vec3::Zero(), normal = Vec3::Zero(), point = Vec3::Zero();
+  Vec3 force = Vec3::Zero(), damping = Vec3::Zero(), normal = Vec3::Zero(), point = Vec3::Zero();
   double weight = 0;
   for (const WallRecord* part : parts) {
     // The tiny constant gives unloaded records equal weight.
     const double w = std::abs(part->normal_force) + std::numeric_limits<double>::min();
     force += part->tangential_force - part->normal_force * part->normal;
+    damping += part->damping_force * part->normal;
     normal += w * part->normal;
     point += w * part->point;
     weight += w;
@@ -56,11 +57,14 @@ WallRecord merged(const std::vector<const WallRecord*>& parts) {
     sum.feature = std::max(sum.feature, part->feature);
     sum.overlap = std::max(sum.overlap, part->overlap);
     sum.flags |= part->flags;
+    sum.birth_step = std::min(sum.birth_step, part->birth_step);
   }
   if (normal.norm() > 0) sum.normal = normal.normalized();
   sum.point = point / weight;
   sum.normal_force = -force.dot(sum.normal);
   sum.tangential_force = force + sum.normal_force * sum.normal;
+  sum.damping_force = damping.dot(sum.normal);
+  sum.tangential_force -= damping - sum.damping_force * sum.normal;
   sum.flags |= contact_merged;
   return sum;
 }

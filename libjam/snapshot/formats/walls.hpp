@@ -39,7 +39,10 @@ struct WallRecord {
   Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
   double normal_force = 0;               // N, > 0 repulsive
   Vec3 tangential_force = Vec3::Zero();  // N, on the particle
+  double damping_force = 0;              // N, > 0 pushes apart; 0 where normal_force has it or it is not known
   double overlap = 0;                    // m
+  std::uint64_t birth_step = 0;
+  bool flags_known = false;              // `flags` are the source's
 };
 
 // One touch, one record: merges the records of one particle on one mesh wall whose contact points coincide within

@@ -150,7 +150,7 @@ TEST(DumpErrors, AMapThatContradictsItselfIsRefused) {
   expect([](ImportMap& m) { m.units.length = 0; }, "units.length is 0");
   expect([](ImportMap& m) { m.dt = -1; }, "dt");
   expect([](ImportMap& m) { m.walls[1].wall.name = "bottom"; }, "two walls are called bottom");
-  expect([](ImportMap& m) { m.walls[1].wall.kind = "cone"; }, "'cone', expected plane, cylinder or mesh");
+  expect([](ImportMap& m) { m.walls[1].wall.kind = "prism"; }, "'prism', expected plane, cylinder, cone, disc, spheres or mesh");
   expect([](ImportMap& m) { m.walls[1].wall.radius = 0; }, "radius");
   expect([](ImportMap& m) { m.walls[1].velocity.z() = 1; }, "moves");
   expect([](ImportMap& m) { m.walls[2].recover = true; }, "is a mesh");

@@ -33,8 +33,8 @@ std::vector<Vec3> contact_forces(const Snapshot& s) {
 
 // Total force minus weight of every particle, in the order of the snapshot (ascending id).
 std::vector<Vec3> driving_forces(const std::string& path, const ImportMap& map, std::size_t frame) {
-  FrameCursor cursor(FrameCursor::Syntax::dump, path,
-                     ordered_fields(map.particles.columns, known_particle_fields(), "test"));
+  const std::vector<Field> fields = ordered_fields(map.particles.columns, known_particle_fields(), "test");
+  FrameCursor cursor(path, open_frames<DumpReader>(path, fields));
   const Table table = cursor.read(frame);
   std::vector<std::pair<double, Vec3>> rows;
   for (std::size_t r = 0; r < table.rows(); ++r) {
