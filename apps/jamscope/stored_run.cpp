@@ -85,23 +85,4 @@ CaseTitle case_title(const jam::RunInfo& info) {
           document.table().at_path("case.description").value_or(std::string())};
 }
 
-FrameRange frame_range(const std::string& text, std::size_t frames) {
-  if (text.empty()) return {0, frames};
-  const auto refuse = [&](const std::string& expected) -> UsageError {
-    return UsageError(fmt::format("--frames {}: expected {}; there are {} frames", text, expected, frames));
-  };
-  const std::size_t colon = text.find(':');
-  if (colon == std::string::npos) throw refuse("A:B, from frame A to before frame B");
-  const auto number = [&](const std::string& part, std::size_t left_out) {
-    if (part.empty()) return left_out;
-    std::size_t value = 0;
-    const auto [end, problem] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (problem != std::errc() || end != part.data() + part.size()) throw refuse("two numbers of frames");
-    return value;
-  };
-  const FrameRange range{number(text.substr(0, colon), 0), std::min(number(text.substr(colon + 1), frames), frames)};
-  if (range.first >= range.last) throw refuse("the first below the second and below the number of frames");
-  return range;
-}
-
 }  // namespace jamscope

@@ -33,12 +33,6 @@ void assign_role(std::vector<jam::Wall>& walls, const std::string& name, jam::Wa
 jam::Criteria stored_run_criteria(const jam::RunInfo& info, const std::string& criteria_file,
                                   const std::vector<std::string>& overrides);
 
-// Frames [first, last) of a run that has so many, from "A:B", where either may be left out; empty: all. Throws UsageError.
-struct FrameRange {
-  std::size_t first = 0, last = 0;
-};
-FrameRange frame_range(const std::string& text, std::size_t frames);
-
 // Name and description of the case that the data carry; empty for foreign data.
 struct CaseTitle {
   std::string name, description;
