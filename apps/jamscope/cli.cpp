@@ -20,6 +20,7 @@
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/inspect.hpp"
 #include "apps/jamscope/network_metrics.hpp"
+#include "apps/jamscope/report_command.hpp"
 #include "apps/jamscope/simulate.hpp"
 #include "apps/jamscope/toml_reader.hpp"
 #include "jamscope/version.hpp"
@@ -45,6 +46,7 @@ struct Options {
   CompareOptions compare;
   MergeOptions merge;
   BenchOptions bench;
+  ReportOptions report;
 };
 
 const std::map<std::string, LogFormat> log_formats{{"text", LogFormat::text}, {"jsonl", LogFormat::jsonl}};
@@ -244,6 +246,19 @@ Command add_compare(CLI::App& app, Options& o) {
   return [&o] { return compare(o.compare); };
 }
 
+Command add_report(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("report", "build report.html again from results, or one report of several runs");
+  ReportOptions& r = o.report;
+  c.add_option("DIR", r.folders, "folders of results; the curves of several are drawn over each other")->required()->type_name("");
+  c.add_option("-o,--output", r.output, "the page; default: report.html in DIR, of several in the current folder")->type_name("FILE");
+  c.add_flag("--figures", r.figures, "write every figure as DIR/figures/NAME.svg and its numbers as NAME.csv");
+  r.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  add_threads(c, r.threads, "number of threads; the results do not depend on it");
+  c.add_flag("-q,--quiet", r.quiet, "no output");
+  c.footer("Examples:\n  jamscope report out --figures\n  jamscope report down up -o both.html");
+  return [&o] { return report(o.report); };
+}
+
 Command add_bench(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("bench", "measure how fast this machine steps a case, and where the time goes");
   BenchOptions& b = o.bench;
@@ -271,7 +286,7 @@ using AddCommand = Command (*)(CLI::App&, Options&);
 constexpr AddCommand commands[] = {
     add_check,
     add_simulate,
-    add_analyze,  add_merge, add_inspect, add_metrics, add_compare, add_bench,
+    add_analyze,  add_merge, add_inspect, add_metrics, add_compare, add_report, add_bench,
 };
 
 int fail(int code, const std::string& message) {
