@@ -137,7 +137,15 @@ void survival_curves(const Data& d, Figures& out) {
   FigureFile f{"survival-curve", "Survival of jams, of every step", {"Duration", "s", true}, {"Share that lasts longer", "", false}, {}, {}};
   for (std::size_t s = 0; s < d.analysis.every_step.size(); ++s) {
     const jam::SurvivalCurve& c = d.analysis.every_step[s].statistics.survival;
-    if (!c.time.empty()) f.curves.push_back({std::string(jam::jam_stream_names[s]), c.time, c.share, c.low, c.high, Kind::steps});
+    if (c.time.empty()) continue;
+    // All last longer than half of the shortest.
+    const auto after = [](double first, const std::vector<double>& rest) {
+      std::vector<double> all{first};
+      all.insert(all.end(), rest.begin(), rest.end());
+      return all;
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    f.curves.push_back({std::string(jam::jam_stream_names[s]), after(c.time.front() / 2, c.time), after(1, c.share), after(nan, c.low), after(nan, c.high), Kind::steps});
   }
   out.push_back(f);
 }
@@ -168,7 +176,7 @@ void jams_above(const Data& d, Figures& out) {
   for (double k = top - 40; k <= top; ++k) thresholds.push_back(std::pow(10, k / 10));
   for (const std::size_t n : jam::counts_above(jam::peaks(force), thresholds)) counts.push_back(double(n));
   out.push_back({"jams-above", fmt::format("Jams above every threshold, of {}", windows ? "windows of steps" : "frames"), {"Threshold", "N", true}, {"Jams", "", false},
-                 {{"jams", thresholds, counts, {}, {}}}, {}});
+                 {{"jams", thresholds, counts, {}, {}, Kind::steps}}, {}});
 }
 
 // Where and how fast each grain was while it was jammed: as points over the time of the peak.
@@ -229,7 +237,8 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-constexpr double width = 720, height = 420, left = 78, right = 20, top = 40, bottom = 56;
+constexpr double width = 720, height = 420, left = 78, right = 20, top = 40, bottom = 56;  // px
+constexpr double legend_width = 200;                                                     // beside the plot, where there are several curves
 
 // A value's place on an axis from `from` to `to`, pixels.
 struct Scale {
@@ -334,7 +343,7 @@ std::vector<double> axis_ticks(double low, double high, bool log) {
       }
     return ticks;
   }
-  const double rough = (high - low) / 5, power = std::pow(10, std::floor(std::log10(rough)));
+  const double rough = (high - low) / 7, power = std::pow(10, std::floor(std::log10(rough)));
   double step = 10 * power;
   for (const double m : {5.0, 2.0, 1.0})
     if (m * power >= rough * (1 - 1e-9)) step = m * power;
@@ -382,7 +391,7 @@ std::string svg_of(const FigureFile& f) {
   std::string s = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n"
       "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      width, height);
+      f.curves.size() > 1 ? width + legend_width : width, height);
   s += frame_of(f, across, up, !f.bars.empty());
   const double slot = f.bars.empty() ? 0 : (width - left - right) / double(f.bars.size());
   const std::size_t every = (f.bars.size() + 19) / 20;
@@ -408,8 +417,8 @@ std::string svg_of(const FigureFile& f) {
                        c.kind == Kind::dashes || k >= std::size(colours) ? " stroke-dasharray=\"5 3\"" : "");
     }
     if (f.curves.size() > 1)
-      s += fmt::format("<rect x=\"{0}\" y=\"{1}\" width=\"12\" height=\"3\" fill=\"{2}\"/><text x=\"{3}\" y=\"{4}\" font-size=\"11\">{5}</text>\n", left + 12, top + 8 + 14 * double(k), colour,
-                       left + 30, top + 13 + 14 * double(k), escaped(c.label));
+      s += fmt::format("<rect x=\"{0}\" y=\"{1}\" width=\"12\" height=\"3\" fill=\"{2}\"/><text x=\"{3}\" y=\"{4}\" font-size=\"11\">{5}</text>\n", width, top + 8 + 16 * double(k), colour,
+                       width + 18, top + 13 + 16 * double(k), escaped(c.label));
   }
   return s + "</svg>\n";
 }

@@ -8,7 +8,7 @@ import { jammedIn, type Samples } from '../recount/samples';
 import { clustersOf, type Clusters } from './clusters';
 import { forceRange, rangeOf, viridis, type Range } from './colours';
 import { decodeFrame, decodeGrains, frameFor, rowOf, type Frame, type Grains } from './frame';
-import { makeViewer, type Chains, type ColourBy, type Look, type Viewer } from './viewer';
+import { makeViewer, type Blade, type Chains, type ColourBy, type Look, type Viewer } from './viewer';
 
 // What can be shown: a jam of a grain.
 export interface Moment {
@@ -78,7 +78,7 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
   let current: { frame: Frame; jammed: Uint8Array; clusters: Clusters } | null = null;
   let playing = 0;
   let asked = 0;
-  const look: Look = { by: 'force', range: { low: 0, high: 1, log: false }, bulk: 1, cut: true, chains: 'strong', vessel: true, blade: true };
+  const look: Look = { by: 'force', range: { low: 0, high: 1, log: false }, bulk: 1, cut: true, chains: 'strong', vessel: true, blade: 'solid' };
   let fastest: Range | null = null; // scales widen, and never change back: frames stay comparable
   let weakest = Infinity;
   const cache = new Map<number, Frame>();
@@ -91,7 +91,9 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
   const play = el('button', { type: 'button', click: () => (playing ? stop() : start()) }, 'Play');
   const fraction = (t: number): string => `${instant(t, decimalsOf)} s`;
 
-  const isJammed = (frame: SceneFrame, id: number): boolean => (loaded ? jammedIn(loaded, frame.frame, threshold).has(id) : frame.jammed.includes(id));
+  // At its own threshold the analysis says who is jammed, by whatever criterion; at another the page counts.
+  const jammedNow = (frame: SceneFrame): Set<number> =>
+    loaded && threshold !== data.criteria.jam_force ? jammedIn(loaded, frame.frame, threshold) : new Set(frame.jammed);
 
   const frameAt = async (k: number): Promise<Frame> => {
     const known = cache.get(k);
@@ -187,7 +189,7 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     index = Math.min(Math.max(k, 0), frames.length - 1);
     const frame = await frameAt(index);
     if (mine !== asked) return;
-    const ids = loaded ? jammedIn(loaded, frame.about.frame, threshold) : new Set(frame.about.jammed);
+    const ids = jammedNow(frame.about);
     const jammed = Uint8Array.from(frame.id, (id) => (ids.has(id) ? 1 : 0));
     current = { frame, jammed, clusters: clustersOf(frame, jammed, (data.criteria.bridge_contact_share ?? 0.1) * threshold, roles) };
     refresh();
@@ -213,13 +215,16 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     void go(index + by);
   };
 
+  const bladeList = el('select', { change: () => { look.blade = bladeList.value as Blade; refresh(); } },
+    el('option', { value: 'solid' }, 'solid'), el('option', { value: 'faint' }, 'see-through'), el('option', { value: 'hidden' }, 'hidden'));
+  const bladeChoice = el('label', { class: 'choice' }, 'Blade ', bladeList);
   const controls = el('div', { class: 'scene-tools' },
     select<ColourBy>('Colour', [['force', 'compressive force'], ['speed', 'speed'], ['contacts', 'coordination'], ['cluster', 'cluster']], look.by, (v) => { look.by = v; refresh(); }),
     select<'1' | '0.4' | '0'>('Grains', [['1', 'full size'], ['0.4', 'small'], ['0', 'jammed only']], '1', (v) => { look.bulk = Number(v); refresh(); }),
     select<Chains>('Force chains', [['mean', 'above the mean'], ['strong', 'above 5 × the mean'], ['bridges', 'bridging clusters'], ['none', 'none']], look.chains, (v) => { look.chains = v; refresh(); }),
     tick('Cut away', look.cut, (v) => { look.cut = v; refresh(); }),
     tick('Vessel', look.vessel, (v) => { look.vessel = v; refresh(); }),
-    tick('Blade', look.blade, (v) => { look.blade = v; refresh(); }),
+    bladeChoice,
     el('button', { type: 'button', click: () => viewer?.reset() }, 'Reset view'));
   const whole = frames.length === scene.all_frames ? 'All frames of the record are here' : `${count(frames.length)} of ${count(scene.all_frames)} frames are here: those of jams, strongest first, then some spread evenly`;
   box.append(
@@ -279,8 +284,10 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
       await ready;
       if (!viewer) return;
       stop();
-      const found = frameFor(frames, (f) => f.time >= moment.start - 1e-12 && f.time <= moment.end + 1e-12 && isJammed(f, moment.particle), moment.peak);
+      const found = frameFor(frames, (f) => f.time >= moment.start - 1e-12 && f.time <= moment.end + 1e-12 && jammedNow(f).has(moment.particle), moment.peak);
       selected = moment.particle;
+      // Close up, the blade would hide what it presses on.
+      if (look.blade === 'solid') bladeList.value = look.blade = 'faint';
       message = found.jammed ? moment.name : `${moment.name}: no frame of this page shows it; this one is the nearest in time`;
       await go(found.index);
       const row = current ? rowOf(current.frame, selected) : -1;

@@ -1,12 +1,13 @@
-// Grains as instanced squares on which the fragment shader finds the sphere: exact at any distance, and two triangles a grain.
-import { BufferAttribute, DynamicDrawUsage, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, ShaderMaterial, Vector4, Color } from 'three';
+// Grains as squares on which the fragment shader finds the sphere: exact at any distance, and two triangles a grain. Each grain's numbers stand at its
+// four corners instead of once for an instance: software renderers draw instances one by one, ten times as slowly as this.
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, GLSL3, Mesh, ShaderMaterial, Vector4, Color } from 'three';
+import type { Rgb } from './colours';
 
 // What a grain is besides its colour; summed in its flag.
 export const flagJammed = 1;
 export const flagSelected = 2;
 
 const vertex = `
-in vec3 centre;
 in float radius;
 in vec4 shade; // colour, flag / 255
 uniform vec4 cut;      // grains on its positive side are left out, unless they are jammed
@@ -17,6 +18,9 @@ flat out float size;
 flat out vec3 colour;
 flat out float flag;
 void main() {
+  vec3 centre = position;
+  int corner = gl_VertexID & 3;
+  vec2 side = vec2(corner == 0 || corner == 3 ? -1.0 : 1.0, corner < 2 ? -1.0 : 1.0);
   flag = floor(shade.a * 255.0 + 0.5);
   bool kept = flag > 0.5;
   size = radius * (kept ? 1.0 : bulk);
@@ -31,7 +35,7 @@ void main() {
   vec3 towards = normalize(-middle);
   vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), towards));
   vec3 up = cross(towards, right);
-  place = middle + towards * size + (right * position.x + up * position.y) * size * 1.12;
+  place = middle + towards * size + (right * side.x + up * side.y) * size * 1.12;
   gl_Position = projectionMatrix * vec4(place, 1.0);
 }`;
 
@@ -67,12 +71,10 @@ void main() {
 export interface Spheres {
   mesh: Mesh;
   material: ShaderMaterial;
-  resize(n: number): void;
-  centre(): Float32Array;
-  radius(): Float32Array;
-  shade(): Uint8Array;
-  changed(n: number): void;
-  dispose(): void;
+  resize(n: number): void; // room for so many
+  set(k: number, x: number, y: number, z: number, radius: number, colour: Rgb, flag: number): void;
+  flag(k: number): number;
+  changed(n: number): void; // so many are to be drawn
 }
 
 export function makeSpheres(): Spheres {
@@ -82,42 +84,48 @@ export function makeSpheres(): Spheres {
       cut: { value: new Vector4(0, 0, 0, 1) }, bulk: { value: 1 }, jamColour: { value: new Color() }, selectColour: { value: new Color() },
     },
   });
-  let geometry = new InstancedBufferGeometry();
+  let geometry = new BufferGeometry();
   const mesh = new Mesh(geometry, material);
   mesh.frustumCulled = false;
-  let room = -1;
-  let centre = new InstancedBufferAttribute(new Float32Array(0), 3);
-  let radius = new InstancedBufferAttribute(new Float32Array(0), 1);
-  let shade = new InstancedBufferAttribute(new Uint8Array(0), 4, true);
+  let room = 0;
+  let centre = new BufferAttribute(new Float32Array(0), 3);
+  let size = new BufferAttribute(new Float32Array(0), 1);
+  let shade = new BufferAttribute(new Uint8Array(0), 4, true);
   const resize = (n: number): void => {
     if (n <= room) return;
     room = n;
     geometry.dispose();
-    geometry = new InstancedBufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    centre = new InstancedBufferAttribute(new Float32Array(3 * n), 3);
-    radius = new InstancedBufferAttribute(new Float32Array(n), 1);
-    shade = new InstancedBufferAttribute(new Uint8Array(4 * n), 4, true);
-    for (const [name, attribute] of [['centre', centre], ['radius', radius], ['shade', shade]] as const) {
+    geometry = new BufferGeometry();
+    centre = new BufferAttribute(new Float32Array(12 * n), 3);
+    size = new BufferAttribute(new Float32Array(4 * n), 1);
+    shade = new BufferAttribute(new Uint8Array(16 * n), 4, true);
+    for (const [name, attribute] of [['position', centre], ['radius', size], ['shade', shade]] as const) {
       attribute.setUsage(DynamicDrawUsage);
       geometry.setAttribute(name, attribute);
     }
+    const index = new Uint32Array(6 * n);
+    for (let k = 0; k < n; ++k) index.set([4 * k, 4 * k + 1, 4 * k + 2, 4 * k, 4 * k + 2, 4 * k + 3], 6 * k);
+    geometry.setIndex(new BufferAttribute(index, 1));
     mesh.geometry = geometry;
   };
   resize(1);
   return {
     mesh, material, resize,
-    centre: () => centre.array as Float32Array,
-    radius: () => radius.array as Float32Array,
-    shade: () => shade.array as Uint8Array,
-    changed(n) {
-      geometry.instanceCount = n;
-      centre.needsUpdate = radius.needsUpdate = shade.needsUpdate = true;
+    set(k, x, y, z, radius, [r, g, b], flag) {
+      for (let corner = 4 * k; corner < 4 * k + 4; ++corner) {
+        centre.setXYZ(corner, x, y, z);
+        size.setX(corner, radius);
+        const bytes = shade.array;
+        bytes[4 * corner] = r;
+        bytes[4 * corner + 1] = g;
+        bytes[4 * corner + 2] = b;
+        bytes[4 * corner + 3] = flag;
+      }
     },
-    dispose() {
-      geometry.dispose();
-      material.dispose();
+    flag: (k) => shade.array[16 * k + 3]!,
+    changed(n) {
+      geometry.setDrawRange(0, 6 * n);
+      centre.needsUpdate = size.needsUpdate = shade.needsUpdate = true;
     },
   };
 }

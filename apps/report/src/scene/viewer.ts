@@ -15,6 +15,7 @@ import { makeWalls, type Walls } from './walls';
 const mm = 1000;
 
 export type ColourBy = 'speed' | 'force' | 'contacts' | 'cluster';
+export type Blade = 'solid' | 'faint' | 'hidden';
 export type Chains = 'none' | 'bridges' | 'strong' | 'mean';
 
 export interface Look {
@@ -22,7 +23,7 @@ export interface Look {
   bulk: number;      // size of grains that are not jammed, 1: as they are
   cut: boolean;      // leave out the half towards the camera
   chains: Chains;
-  vessel: boolean; blade: boolean;
+  vessel: boolean; blade: Blade;
 }
 
 export interface Shown {
@@ -50,7 +51,7 @@ export interface Viewer {
 const strong = 5;
 
 export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLElement, rendered: () => void): Promise<Viewer> {
-  const renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  const renderer = new WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
   const canvas = renderer.domElement;
   box.append(canvas);
   const low = new Vector3(...(scene.low as [number, number, number])).multiplyScalar(mm);
@@ -137,7 +138,7 @@ export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLE
       }
     };
     consider((force) => { thickest = Math.max(thickest, force); });
-    const radius = (force: number): number => tubeRadius(force, thickest, 0.45 * mean);
+    const radius = (force: number): number => tubeRadius(force, thickest, 0.28 * mean);
     const at = (row: number): [number, number, number] => [mm * frame.x[row]!, mm * frame.y[row]!, mm * frame.z[row]!];
     for (let c = 0; c < frame.a.length; ++c) {
       const bridge = bridging(frame.a[c]!) && bridging(frame.b[c]!);
@@ -157,26 +158,14 @@ export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLE
     const { frame, jammed, selected } = shown;
     const n = frame.size;
     spheres.resize(n);
-    const centres = spheres.centre();
-    const radii = spheres.radius();
-    const shade = spheres.shade();
-    for (let v = 0; v < n; ++v) {
-      centres[3 * v] = mm * frame.x[v]!;
-      centres[3 * v + 1] = mm * frame.y[v]!;
-      centres[3 * v + 2] = mm * frame.z[v]!;
-      radii[v] = mm * frame.radius[v]!;
-      const [r, g, b] = colourOf(shown, look, v);
-      shade[4 * v] = r;
-      shade[4 * v + 1] = g;
-      shade[4 * v + 2] = b;
-      shade[4 * v + 3] = (jammed[v] ? flagJammed : 0) + (frame.id[v] === selected ? flagSelected : 0);
-    }
+    for (let v = 0; v < n; ++v)
+      spheres.set(v, mm * frame.x[v]!, mm * frame.y[v]!, mm * frame.z[v]!, mm * frame.radius[v]!, colourOf(shown, look, v),
+        (jammed[v] ? flagJammed : 0) + (frame.id[v] === selected ? flagSelected : 0));
     spheres.changed(n);
     spheres.material.uniforms.bulk!.value = look.bulk;
     fillTubes(shown, look);
     walls.place(frame.about.poses);
-    walls.show('vessel', look.vessel);
-    walls.show('blade', look.blade);
+    walls.show(look.vessel, look.blade !== 'hidden', look.blade === 'faint');
     draw();
   };
 
@@ -283,6 +272,6 @@ export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLE
       return { x: ((p.x + 1) / 2) * canvas.clientWidth, y: ((1 - p.y) / 2) * canvas.clientHeight };
     },
     thickest: () => thickest,
-    isDrawnJammed: (row) => row >= 0 && (spheres.shade()[4 * row + 3]! & flagJammed) !== 0,
+    isDrawnJammed: (row) => row >= 0 && (spheres.flag(row) & flagJammed) !== 0,
   };
 }

@@ -64,7 +64,7 @@ async function geometryOf(wall: SceneWall, scene: SceneData, load: LoadSection):
 export interface Walls {
   group: Group;
   place(poses: readonly number[][]): void;
-  show(role: string, on: boolean): void;
+  show(vessel: boolean, blade: boolean, faint: boolean): void; // faint: one sees through the blade
   colour(blade: number, vessel: number): void;
 }
 
@@ -98,8 +98,16 @@ export async function makeWalls(scene: SceneData, load: LoadSection): Promise<Wa
         body.quaternion.set(p[4]!, p[5]!, p[6]!, p[3]!);
       });
     },
-    show(role, on) {
-      for (const body of bodies) if ((body.userData.role === 'blade') === (role === 'blade')) body.visible = on;
+    show(vessel, blade, faint) {
+      for (const body of bodies) {
+        body.visible = body.userData.role === 'blade' ? blade : vessel;
+        if (body.userData.role !== 'blade') continue;
+        const material = body.userData.material as MeshLambertMaterial;
+        if (material.transparent !== faint) material.needsUpdate = true;
+        material.transparent = faint;
+        material.opacity = faint ? 0.3 : 1;
+        material.depthWrite = !faint;
+      }
     },
     colour(blade, vessel) {
       for (const body of bodies) (body.userData.material as MeshLambertMaterial).color.setHex(body.userData.role === 'blade' ? blade : vessel);
