@@ -24,6 +24,7 @@
 #include "apps/jamscope/follow.hpp"
 #include "apps/jamscope/inspect.hpp"
 #include "apps/jamscope/network_metrics.hpp"
+#include "apps/jamscope/report_command.hpp"
 #include "apps/jamscope/simulate.hpp"
 #include "apps/jamscope/toml_reader.hpp"
 #include "jamscope/version.hpp"
@@ -51,6 +52,7 @@ struct Options {
   ClaimsOptions claims;
   MergeOptions merge;
   BenchOptions bench;
+  ReportOptions report;
   ExportOptions export_;
   std::string shell;
 };
@@ -281,6 +283,19 @@ Command add_claims(CLI::App& app, Options& o) {
   return [&o] { return claims(o.claims); };
 }
 
+Command add_report(CLI::App& app, Options& o) {
+  CLI::App& c = *app.add_subcommand("report", "build report.html again from results, or one report of several runs");
+  ReportOptions& r = o.report;
+  c.add_option("DIR", r.folders, "folders of results; the curves of several are drawn over each other")->required()->type_name("");
+  c.add_option("-o,--output", r.output, "the page; default: report.html in DIR, of several in the current folder")->type_name("FILE");
+  c.add_flag("--figures", r.figures, "write every figure as DIR/figures/NAME.svg and its numbers as NAME.csv");
+  r.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  add_threads(c, r.threads, "number of threads; the results do not depend on it");
+  c.add_flag("-q,--quiet", r.quiet, "no output");
+  c.footer("Examples:\n  jamscope report out --figures\n  jamscope report down up -o both.html");
+  return [&o] { return report(o.report); };
+}
+
 Command add_bench(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("bench", "measure how fast this machine steps a case, and where the time goes");
   BenchOptions& b = o.bench;
@@ -352,8 +367,8 @@ using AddCommand = Command (*)(CLI::App&, Options&);
 constexpr AddCommand commands[] = {
     add_check,
     add_simulate,
-    add_analyze,  add_merge, add_inspect, add_metrics, add_follow, add_compare, add_claims, add_bench,
-    add_export, add_completion,
+    add_analyze,  add_merge,  add_inspect, add_metrics, add_follow, add_compare, add_claims,
+    add_report,   add_export, add_bench,   add_completion,
 };
 
 int fail(int code, const std::string& message) {

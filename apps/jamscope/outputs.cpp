@@ -17,7 +17,6 @@
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/derived_table.hpp"
 #include "apps/jamscope/errors.hpp"
-#include "apps/jamscope/report.hpp"
 #include "jamscope/version.hpp"
 #include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
@@ -341,31 +340,6 @@ std::string processor() {
   return uname(&name) == 0 ? name.machine : "unknown processor";
 }
 
-ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts, const jam::Criteria& criteria) {
-  ReportContext context;
-  context.name = facts.name;
-  context.description = facts.description;
-  context.command_line = facts.command_line;
-  context.machine = facts.machine;
-  context.created_utc = facts.created_utc;
-  context.wall_seconds = facts.wall_seconds;
-  context.particle_steps_per_second = facts.particle_steps_per_second;
-  context.warnings = facts.warnings;
-  if (const jam::JamCriterion& criterion = jam::criterion_of(criteria); criterion.unit != "N")
-    context.warnings.push_back(fmt::format("where this page says above {:g} N, read: {} ({}, threshold {:g})", criteria.jam_force, criterion.doc, criterion.name,
-                                           jam::threshold_of(criteria)));
-  if (!info.case_toml.empty()) {
-    try {
-      const CaseFile file = read_case_text(info.case_toml, "stored case");
-      for (const DerivedRow& row : derived_table(file.physics, dem::derive(file.physics)))
-        context.derived.push_back({row.name, row.value, row.unit});
-    } catch (const dem::CaseError&) {
-      // A case of another version: the page does without its derived numbers.
-    }
-  }
-  return context;
-}
-
 }  // namespace
 
 std::string utc_now() {
@@ -383,6 +357,27 @@ RunFacts facts_of_this_process(std::vector<std::string> command_line) {
   facts.machine = fmt::format("{}, {} processors", processor(), std::max(1u, std::thread::hardware_concurrency()));
   facts.created_utc = utc_now();
   return facts;
+}
+
+RunFacts facts_of_summary(const std::string& text, const std::string& path) {
+  try {
+    const Json run = Json::parse(text).at("run");
+    const Json& by = run.at("results_by");
+    RunFacts facts;
+    facts.name = run.value("name", "");
+    facts.description = run.value("description", "");
+    facts.inputs = by.value("inputs", std::vector<std::string>{});
+    facts.command_line = by.value("command_line", std::vector<std::string>{});
+    facts.machine = by.value("machine", "");
+    facts.created_utc = by.value("created_utc", "");
+    facts.threads = by.value("threads", 0);
+    facts.wall_seconds = by.value("wall_seconds", facts.wall_seconds);
+    facts.particle_steps_per_second = by.value("particle_steps_per_second", facts.particle_steps_per_second);
+    facts.warnings = by.value("warnings", std::vector<std::string>{});
+    return facts;
+  } catch (const Json::exception& error) {
+    throw jam::DataError(fmt::format("{}: is no summary of results: {}", path, error.what()));
+  }
 }
 
 std::string energy_text(const jam::RunInfo& info, const jam::Series& series) {
@@ -430,14 +425,42 @@ void write_text_file(const std::string& path, const std::string& text) {
   if (error) throw jam::DataError(fmt::format("{}: cannot be written: {}", path, error.message()));
 }
 
+ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts, const jam::Criteria& criteria) {
+  ReportContext context;
+  context.name = facts.name;
+  context.description = facts.description;
+  context.command_line = facts.command_line;
+  context.machine = facts.machine;
+  context.created_utc = facts.created_utc;
+  context.wall_seconds = facts.wall_seconds;
+  context.particle_steps_per_second = facts.particle_steps_per_second;
+  context.warnings = facts.warnings;
+  if (const jam::JamCriterion& criterion = jam::criterion_of(criteria); criterion.unit != "N")
+    context.warnings.push_back(fmt::format("where this page says above {:g} N, read: {} ({}, threshold {:g})", criteria.jam_force, criterion.doc, criterion.name,
+                                           jam::threshold_of(criteria)));
+  if (!info.case_toml.empty()) {
+    try {
+      const CaseFile file = read_case_text(info.case_toml, "stored case");
+      for (const DerivedRow& row : derived_table(file.physics, dem::derive(file.physics)))
+        context.derived.push_back({row.name, row.value, row.unit});
+    } catch (const dem::CaseError&) {
+      // A case of another version: the page does without its derived numbers.
+    }
+  }
+  return context;
+}
+
 void write_outputs(const std::string& folder, const jam::RunInfo& info, const jam::Analysis& analysis,
-                   const jam::Series& series, const RunFacts& facts) {
+                   const jam::Series& series, const RunFacts& facts, const jam::SnapshotSource* snapshots, int threads) {
   const auto in_folder = [&](const char* name) { return (fs::path(folder) / name).string(); };
   write_text_file(in_folder("events.csv"), jam::events_csv(analysis));
   if (const std::string jams = jam::step_jams_csv(analysis); !jams.empty()) write_text_file(in_folder("jams.csv"), jams);
   write_text_file(in_folder("summary.json"), summary_json(info, analysis, series, facts));
   jam::write_results(in_folder("jam.h5"), analysis, info);
-  write_text_file(in_folder("report.html"), report_html(info, analysis, series, report_context(info, facts, analysis.criteria)));
+  const SceneData scene = snapshots != nullptr ? scene_data(*snapshots, analysis, series, room_for_scenes, threads)
+                                               : no_scene("The snapshots of this analysis were not at hand when the page was written.");
+  const ReportContext context = report_context(info, facts, analysis.criteria);
+  write_text_file(in_folder("report.html"), report_html({{info, analysis, series, context, scene}}));
 }
 
 }  // namespace jamscope

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/jamscope/report.hpp"
 #include "libjam/analysis.hpp"
 #include "libjam/snapshot/snapshot.hpp"
 
@@ -31,6 +32,9 @@ std::string utc_now();  // "2026-11-22T03:08:39Z"
 std::string summary_json(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
                          const RunFacts& facts);
 
+// The facts that summary_json() wrote, so that a report can be built again to the same bytes. Throws jam::DataError where the text is none.
+RunFacts facts_of_summary(const std::string& text, const std::string& path);
+
 // One line on where the work of the walls went, of a run that kept an energy ledger; else "".
 std::string energy_text(const jam::RunInfo& info, const jam::Series& series);
 
@@ -42,8 +46,12 @@ void prepare_folder(const std::string& folder, bool overwrite);
 // jam::DataError where the disk refuses.
 void write_text_file(const std::string& path, const std::string& text);
 
-// All result files. The folder must exist; other files in it are left alone.
+// What report.html says of a run beside its analysis.
+ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts, const jam::Criteria& criteria);
+
+// All result files. The folder must exist; other files in it are left alone. `snapshots`: the frames of the analysis, for the report; null where
+// they are not at hand.
 void write_outputs(const std::string& folder, const jam::RunInfo& info, const jam::Analysis& analysis,
-                   const jam::Series& series, const RunFacts& facts);
+                   const jam::Series& series, const RunFacts& facts, const jam::SnapshotSource* snapshots, int threads);
 
 }  // namespace jamscope

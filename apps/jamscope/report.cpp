@@ -23,6 +23,8 @@ using nlohmann::json;
 constexpr std::string_view data_marker = "@JAMSCOPE_REPORT_DATA@";
 constexpr std::size_t longest_text = 100'000;  // bytes, of a case file
 constexpr std::size_t longest_list = 200;      // entries, of notes and arguments
+constexpr std::size_t most_data = 5'000'000;   // bytes, of the island: what a browser parses at once
+constexpr std::size_t metric_rows = 2000;      // of the hundred curves of network metrics
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Shorter numbers make a smaller page; a curve needs no more than 6 digits, an instant 10.
@@ -255,6 +257,105 @@ json tracks_json(const jam::RunInfo& info, const jam::Analysis& analysis, std::s
   return list;
 }
 
+json cluster_events_json(const jam::Analysis& analysis, std::size_t limit) {
+  json list = json::array();
+  for (const auto k : strongest(analysis.cluster_events, limit, [](const jam::JamEvent& e) { return e.peak_force; })) {
+    list.push_back(event_json(analysis.cluster_events[k]));
+    list.back()["number"] = k + 1;
+  }
+  return list;
+}
+
+json step_jam_json(const jam::StepJam& jam) {
+  constexpr std::size_t named = 20;
+  json members = json::array();
+  for (std::size_t k = 0; k < std::min(named, jam.members.size()); ++k) members.push_back(jam.members[k]);
+  return {{"start", instant(jam.start)},
+          {"end", instant(jam.end)},
+          {"duration", number(jam.duration)},
+          {"open_at_start", jam.open_at_start},
+          {"open_at_end", jam.open_at_end},
+          {"peak_force", number(jam.peak_force)},
+          {"peak_time", instant(jam.peak_time)},
+          {"peak_particle", jam.peak_particle},
+          {"site", jam.site},
+          {"impulse", number(jam.impulse)},
+          {"work", number(jam.work)},
+          {"members", members},
+          {"member_count", jam.members.size()}};
+}
+
+json interval_json(double value, double low, double high) {
+  return {{"value", number(value)}, {"low", number(low)}, {"high", number(high)}};
+}
+
+json numbers(const std::vector<double>& values) {
+  json list = json::array();
+  for (const double v : values) list.push_back(number(v));
+  return list;
+}
+
+// Jams of every step, by stream; none where the run did not watch.
+json steps_json(const jam::Analysis& analysis, std::size_t limit) {
+  json streams = json::object();
+  for (std::size_t s = 0; s < analysis.every_step.size(); ++s) {
+    const auto& stream = analysis.every_step[s];
+    const jam::JamStatistics& t = stream.statistics;
+    json jams = json::array();
+    for (const auto k : strongest(stream.jams, limit, [](const jam::StepJam& j) { return j.peak_force; })) jams.push_back(step_jam_json(stream.jams[k]));
+    streams[std::string(jam::jam_stream_names[s])] = {
+        {"events", stream.jams.size()},
+        {"jams", jams},
+        {"rate", interval_json(t.rate.value, t.rate.low, t.rate.high)},
+        {"median", interval_json(t.median.value, t.median.low, t.median.high)},
+        {"jammed_time", number(t.jammed_time)},
+        {"longest", number(t.longest)},
+        {"fano", number(t.fano)},
+        {"survival", {{"time", numbers(t.survival.time)}, {"share", numbers(t.survival.share)}, {"low", numbers(t.survival.low)}, {"high", numbers(t.survival.high)}}}};
+  }
+  return streams;
+}
+
+json metrics_json(const jam::Analysis& analysis, std::size_t limit) {
+  const Bins bins(analysis.frames.size(), std::min(limit, metric_rows));
+  json curves = json::array();
+  for (const jam::RecordedMetric& m : analysis.metrics)
+    if (std::any_of(m.values.begin(), m.values.end(), [](double v) { return std::isfinite(v); }))
+      curves.push_back({{"name", m.name}, {"unit", m.unit}, {"doc", m.doc}, {"values", column(bins, Keep::mean, m.values)}});
+  return {{"every", bins.every},
+          {"time", curve(
+                       bins, Keep::last, [&](std::size_t r) { return analysis.frames[r].time; }, 10)},
+          {"curves", curves}};
+}
+
+// The energy ledger: one curve for each place where energy is or went, and the work of each wall.
+json energy_json(const jam::RunInfo& info, const jam::Series& series, std::size_t limit) {
+  if (series.energy.residual.empty()) return nullptr;
+  const Bins bins(series.size(), limit);
+  json curves = json::array();
+  double put_in = 0;
+  const auto add = [&](const std::string& name, const std::vector<double>& values) {
+    if (jam::present(values, bins.rows)) curves.push_back({{"name", name}, {"values", column(bins, Keep::last, values)}});
+  };
+  for (std::size_t w = 0; w < std::min(info.walls.size(), series.walls.size()); ++w) {
+    add("work of " + info.walls[w].name, series.walls[w].work);
+    if (!series.walls[w].work.empty()) put_in += std::max(series.walls[w].work.back(), 0.0);
+  }
+  const jam::Series::Energy& e = series.energy;
+  const std::pair<const char*, const std::vector<double>*> places[] = {
+      {"kinetic", &e.kinetic}, {"rotational", &e.rotational}, {"gravitational", &e.gravitational}, {"elastic", &e.elastic}, {"adhesive", &e.adhesive},
+      {"tangential springs", &e.tangential}, {"rolling springs", &e.rolling}, {"normal damping", &e.normal_damping}, {"tangential damping", &e.tangential_damping},
+      {"sliding", &e.sliding}, {"rolling resistance", &e.rolling_resistance}, {"detachment", &e.detachment}, {"change of stiffness", &e.stiffness_change},
+      {"lost by the finite step", &e.time_stepping}, {"unexplained", &e.residual}};
+  for (const auto& [name, values] : places) add(name, *values);
+  return {{"every", bins.every},
+          {"time", curve(
+                       bins, Keep::last, [&](std::size_t r) { return series.time[r]; }, 10)},
+          {"put_in", number(put_in)},
+          {"unexplained", number(e.residual.back())},
+          {"curves", curves}};
+}
+
 json headline_json(const jam::Analysis& analysis, const jam::Series& series) {
   double force = nan, at = nan;
   std::string source = "frames";
@@ -374,8 +475,8 @@ json run_json(const jam::RunInfo& info) {
             {"vessel_radius", number(info.gap.vessel_radius > 0 ? info.gap.vessel_radius : nan)}}}};
 }
 
-json report_data(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
-                 const ReportContext& context, std::size_t rows) {
+json run_data(const ReportRun& run, std::size_t rows) {
+  const auto& [info, analysis, series, context, scene] = run;
   json classes = json::array(), histogram = json::array(), derived = json::array();
   for (const auto& c : analysis.survival_classes)
     classes.push_back({{"low", number(c.low)},
@@ -390,9 +491,7 @@ json report_data(const jam::RunInfo& info, const jam::Analysis& analysis, const 
                        {"value", shortened(context.derived[k].value, 2000)},
                        {"unit", shortened(context.derived[k].unit, 200)}});
   const std::size_t listed = std::max<std::size_t>(rows / 5, 1);
-  return {{"format", "jamscope-report"},
-          {"schema", 1},
-          {"name", shortened(context.name, 200)},
+  return {{"name", shortened(context.name, 200)},
           {"description", shortened(context.description, 5000)},
           {"headline", headline_json(analysis, series)},
           {"criteria", criteria_json(analysis.criteria)},
@@ -401,6 +500,13 @@ json report_data(const jam::RunInfo& info, const jam::Analysis& analysis, const 
           {"flow_energy", flow_energy_json(analysis.flow_energy, rows)},
           {"events", events_json(analysis, listed)},
           {"tracks", tracks_json(info, analysis, listed)},
+          {"cluster_events", cluster_events_json(analysis, listed)},
+          {"steps", steps_json(analysis, listed)},
+          {"metrics", metrics_json(analysis, rows)},
+          {"energy", energy_json(info, series, rows)},
+          {"scene", scene.view},
+          {"samples", scene.samples},
+          {"stays", scene.stays},
           {"survival_classes", classes},
           {"jammed_histogram", histogram},
           {"derived", derived},
@@ -420,11 +526,11 @@ json report_data(const jam::RunInfo& info, const jam::Analysis& analysis, const 
 
 }  // namespace
 
-std::string report_json(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
-                        const ReportContext& context, std::size_t rows) {
+std::string report_json(const std::vector<ReportRun>& runs, std::size_t rows) {
+  json data{{"format", "jamscope-report"}, {"schema", 2}, {"runs", json::array()}};
+  for (const ReportRun& run : runs) data["runs"].push_back(run_data(run, std::max<std::size_t>(rows, 1)));
   // Plain ASCII without '<': nothing in it can end the script element that holds it, whatever a name contains.
-  const std::string text = report_data(info, analysis, series, context, std::max<std::size_t>(rows, 1))
-                               .dump(-1, ' ', true, json::error_handler_t::replace);
+  const std::string text = data.dump(-1, ' ', true, json::error_handler_t::replace);
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {
@@ -436,19 +542,24 @@ std::string report_json(const jam::RunInfo& info, const jam::Analysis& analysis,
   return safe;
 }
 
-std::string report_html(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
-                        const ReportContext& context) {
+std::string report_html(const std::vector<ReportRun>& runs) {
   const std::string_view page(reinterpret_cast<const char*>(report_page), report_page_size);
   const auto at = page.find(data_marker);
   if (at == std::string_view::npos) throw std::logic_error("report page: the data marker is missing");
+  std::string sections;
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    for (std::size_t k = 0; k < runs[r].scene.sections.size(); ++k)
+      sections += "</script>\n<script type=\"text/plain\" id=\"s" + std::to_string(r) + "-" + std::to_string(k) + "\">" + runs[r].scene.sections[k];
+  const std::size_t most = std::min(most_data, largest_report - std::min(largest_report, page.size() + sections.size()));
   std::string data;
   for (std::size_t rows = 20'000;; rows /= 2) {
-    data = report_json(info, analysis, series, context, rows);
-    if (page.size() + data.size() <= largest_report || rows < 100) break;
+    data = report_json(runs, rows);
+    if (data.size() <= most || rows < 100) break;
   }
+  // The sections follow the island as elements of their own; the page closes the last one.
   std::string html;
-  html.reserve(page.size() + data.size());
-  html.append(page.substr(0, at)).append(data).append(page.substr(at + data_marker.size()));
+  html.reserve(page.size() + data.size() + sections.size());
+  html.append(page.substr(0, at)).append(data).append(sections).append(page.substr(at + data_marker.size()));
   return html;
 }
 

@@ -1,4 +1,4 @@
-// report.html: one page, readable from disk without network, that shows what an analysis found.
+// report.html: one page, readable from disk without network, that shows what one analysis found, or several side by side.
 //
 // The page is apps/report, built once by npm, checked in and compiled into the program; this file only fills in the
 // data.
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/jamscope/scene_data.hpp"
 #include "libjam/analysis.hpp"
 #include "libjam/snapshot/snapshot.hpp"
 
@@ -30,18 +31,27 @@ struct ReportContext {
   std::vector<std::string> warnings;  // for example SnapshotSource::warnings
 };
 
-// No page is larger than this, however long the run (bytes).
-inline constexpr std::size_t largest_report = 5'000'000;
+// One run on the page. What it refers to must outlive it.
+struct ReportRun {
+  const jam::RunInfo& info;
+  const jam::Analysis& analysis;
+  const jam::Series& series;
+  const ReportContext& context;
+  const SceneData& scene;
+};
 
-// The whole page. Curves of more rows than the page can hold are thinned to bins that keep minimum, mean and maximum,
-// so that no peak is lost, and the page says so; of too many events or tracks those with the largest peak force stay.
+// No page is larger than this, however long the runs (bytes).
+inline constexpr std::size_t largest_report = 20'000'000;
+// Of that, what the scenes of all runs together may take.
+inline constexpr std::size_t room_for_scenes = 13'000'000;
+
+// The whole page, of one run or of several, overlaid. Curves of more rows than the page can hold are thinned to bins that keep minimum, mean and
+// maximum, so that no peak is lost, and the page says so; of too many events or tracks those with the largest peak force stay.
 // NaN and infinity become null. Any text may hold any bytes: invalid UTF-8 is replaced, markup is escaped.
-std::string report_html(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
-                        const ReportContext& context);
+std::string report_html(const std::vector<ReportRun>& runs);
 
-// The data of the page alone, as the JSON text of its island (format "jamscope-report", schema 1). `rows` bounds every
+// The data of the page alone, as the JSON text of its island (format "jamscope-report", schema 2). `rows` bounds every
 // curve.
-std::string report_json(const jam::RunInfo& info, const jam::Analysis& analysis, const jam::Series& series,
-                        const ReportContext& context, std::size_t rows);
+std::string report_json(const std::vector<ReportRun>& runs, std::size_t rows);
 
 }  // namespace jamscope

@@ -154,7 +154,8 @@ class Run {
     facts.particle_steps_per_second = speed();
     facts.warnings = file_.warnings;
     jam::write_xdmf(folder_ / "run.xdmf", folder_ / "run.h5");
-    write_outputs(folder_.string(), info_, analysis, series_, facts);
+    const jam::SnapshotSource stored = jam::open_jamscope_file(snapshots());
+    write_outputs(folder_.string(), info_, analysis, series_, facts, &stored, options_.threads);
     return analysis;
   }
 

@@ -19,17 +19,20 @@ function onePage(): Plugin {
         if (file !== page) delete bundle[name];
       }
       if (/<\/script|<!--/i.test(script)) throw new Error('the script would end its own element');
-      const licence = readFileSync(new URL('node_modules/uplot/LICENSE', import.meta.url), 'utf8').trim();
+      const licences = ['uplot', 'three'].map((name) => {
+        const text = (file: string): string => readFileSync(new URL(`node_modules/${name}/${file}`, import.meta.url), 'utf8');
+        return `report.html contains ${name} ${(JSON.parse(text('package.json')) as { version: string }).version}:\n\n${text('LICENSE').trim()}\n`;
+      }).join('\n');
       const policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
       const html = String(page.source)
         .replace(/\s*<script\b[^>]*src=[^>]*><\/script>/, '')
         .replace(/\s*<link\b[^>]*rel="stylesheet"[^>]*>/, '')
         .replace('<meta charset="utf-8" />', (m) => `${m}\n<meta http-equiv="Content-Security-Policy" content="${policy}" />`)
-        .replace('</head>', () => `<style>${style.trim()}</style>\n<!--\nThis page contains uPlot 1.6.32:\n${licence}\n-->\n</head>`)
+        .replace('</head>', () => `<style>${style.trim()}</style>\n<!--\n${licences}-->\n</head>`)
         .replace('</body>', () => `<script>${script.trim()}</script>\n</body>`);
       page.source = html;
       page.fileName = 'report.html';
-      this.emitFile({ type: 'asset', fileName: 'LICENSES.txt', source: `report.html contains uPlot 1.6.32:\n\n${licence}\n` });
+      this.emitFile({ type: 'asset', fileName: 'LICENSES.txt', source: licences });
     },
   };
 }

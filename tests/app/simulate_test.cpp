@@ -160,6 +160,11 @@ TEST_F(SimulateProgram, RunsFromCaseToReportTheSameForAnyThreadsAndAgainFromItsF
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_EQ(text_of(folder_ / "one/events.csv"), text_of(folder_ / "again/events.csv"));
   EXPECT_EQ(summary(folder_ / "one")["analysis"].dump(), summary(folder_ / "again")["analysis"].dump());
+
+  // The page of the running simulation is that of its files.
+  const std::string page = text_of(folder_ / "one/report.html");
+  ASSERT_EQ(run_program("report -q " + (folder_ / "one")).code, 0);
+  EXPECT_TRUE(text_of(folder_ / "one/report.html") == page);
 }
 
 TEST_F(SimulateProgram, ResumesToTheSameNumbersAsAnUninterruptedRun) {

@@ -1,25 +1,28 @@
 // A figure on the page: title, caption, tools, and the plot or the reason why there is none.
 import { drawBars } from './charts/bar_plot';
-import type { TimePlot, View } from './charts/spec';
-import { drawTimePlot, type DrawnPlot } from './charts/time_plot';
+import type { View } from './charts/spec';
+import { drawTimePlot } from './charts/time_plot';
 import type { ReportData } from './data';
 import { el, saveText } from './dom';
 import type { Figure } from './figures/figure';
+import { viewOf } from './figures/overlay';
 import { csv, type Cell } from './numbers/csv';
 import type { TimeView } from './time_view';
 
 // The numbers behind a view. Curves with different instants follow one another, so the first column names the curve.
 export function viewCsv(view: View): string {
+  const titled = (quantity: string, unit: string): string => (unit === '' ? quantity : `${quantity} (${unit})`);
   switch (view.kind) {
     case 'time': {
       const rows: Cell[][] = view.curves.flatMap((curve) => curve.time.map((t, r): Cell[] => [curve.label, t, curve.values[r]]));
-      return csv(['curve', 'time_s', view.unit === '' ? view.quantity : `${view.quantity} (${view.unit})`], rows);
+      return csv(['curve', view.across ? titled(view.across.quantity, view.across.unit) : 'time_s', titled(view.quantity, view.unit)], rows);
     }
     case 'bars':
-      return csv([view.across, view.unit === '' ? view.quantity : `${view.quantity} (${view.unit})`, 'low', 'high'],
-        view.bars.map((b) => [b.label, b.value, b.low, b.high]));
+      return csv([view.across, titled(view.quantity, view.unit), 'low', 'high'], view.bars.map((b) => [b.label, b.value, b.low, b.high]));
     case 'table':
       return csv(view.header, view.rows);
+    case 'several':
+      return view.parts.map((part) => csv([part.name], []) + viewCsv(part.view)).join('');
     case 'missing':
       return '';
   }
@@ -29,50 +32,67 @@ export function emptyBox(why: string): HTMLElement {
   return el('p', { class: 'empty' }, why);
 }
 
-function logSwitch(spec: TimePlot, plot: DrawnPlot): HTMLElement | null {
-  if (spec.log !== 'offer' && spec.log !== 'first') return null;
+// What the reader chose, by figure, so that a figure that is drawn anew keeps it.
+const chosen = new Map<string, boolean>();
+
+function logSwitch(key: string, label: string, offer: 'offer' | 'first' | 'always' | undefined, set: (log: boolean) => void): HTMLElement | null {
+  if (offer !== 'offer' && offer !== 'first') return null;
+  const first = chosen.get(key) ?? offer === 'first';
   const button = (text: string, log: boolean): HTMLButtonElement =>
-    el('button', { type: 'button', 'aria-pressed': String(log === (spec.log === 'first')), click: () => choose(log) }, text);
+    el('button', { type: 'button', 'aria-pressed': String(log === first), click: () => choose(log) }, text);
   const linear = button('Linear', false);
   const logarithmic = button('Logarithmic', true);
   const choose = (log: boolean): void => {
-    plot.setLog(log);
+    chosen.set(key, log);
+    set(log);
     linear.setAttribute('aria-pressed', String(!log));
     logarithmic.setAttribute('aria-pressed', String(log));
   };
-  return el('span', { class: 'switch', role: 'group', 'aria-label': 'Vertical axis' }, linear, logarithmic);
+  if (first !== (offer === 'first')) set(first);
+  return el('span', { class: 'switch', role: 'group', 'aria-label': label }, linear, logarithmic);
 }
 
 export interface Card {
+  figure: Figure;
   box: HTMLElement;
   redraw(): void;
 }
 
-export function drawCard(figure: Figure, data: ReportData, view: TimeView): Card {
-  const spec = figure.view(data);
+export function drawCard(figure: Figure, runs: readonly ReportData[], view: TimeView): Card {
+  const spec = viewOf(figure, runs);
   const tools = el('span', { class: 'tools' });
   const paper = figure.paper === '' ? null : el('span', { class: 'paper', title: 'Figure or table of Xuan and Nan (2024) that this one answers' }, figure.paper);
   const head = el('header', {}, el('h3', {}, figure.title, paper && ' ', paper), tools);
   const box = el('section', { class: `card shows-${spec.kind}`, id: figure.id }, head);
-  let redraw = (): void => {};
-  if (spec.kind === 'missing') {
-    box.append(emptyBox(spec.why));
-    return { box, redraw };
+  const redraws: (() => void)[] = [];
+  const fill = (part: View, title: string): void => {
+    if (part.kind === 'missing') {
+      box.append(emptyBox(part.why));
+    } else if (part.kind === 'time') {
+      const plot = drawTimePlot(part, view, title);
+      redraws.push(plot.redraw);
+      const up = logSwitch(`${figure.id}-y`, 'Vertical axis', part.log, plot.setLog);
+      const along = logSwitch(`${figure.id}-x`, 'Horizontal axis', part.across?.log, plot.setLogAcross);
+      if (along) tools.append(el('span', { class: 'axis-name' }, 'x'), along);
+      if (up) tools.append(...(along ? [el('span', { class: 'axis-name' }, 'y')] : []), up);
+      box.append(plot.box);
+    } else if (part.kind === 'bars') {
+      box.append(drawBars(part, title) as unknown as HTMLElement);
+    } else if (part.kind === 'table') {
+      box.append(el('div', { class: 'scroll' }, el('table', { class: 'plain' },
+        el('thead', {}, el('tr', {}, ...part.header.map((h) => el('th', { scope: 'col' }, h)))),
+        el('tbody', {}, ...part.rows.map((row) => el('tr', {}, ...row.map((cell) => el('td', {}, cell))))))));
+    } else {
+      for (const each of part.parts) {
+        box.append(el('h4', {}, each.name));
+        fill(each.view, `${title}, ${each.name}`);
+      }
+    }
+  };
+  fill(spec, figure.title);
+  if (spec.kind !== 'missing') {
+    tools.append(el('button', { type: 'button', title: 'Save the numbers of this figure', click: () => saveText(`${figure.id}.csv`, viewCsv(spec)) }, 'CSV'));
+    box.append(el('p', { class: 'caption' }, figure.caption(runs[0]!)));
   }
-  if (spec.kind === 'time') {
-    const plot = drawTimePlot(spec, view, figure.title);
-    redraw = plot.redraw;
-    const choice = logSwitch(spec, plot);
-    if (choice) tools.append(choice);
-    box.append(plot.box);
-  } else if (spec.kind === 'bars') {
-    box.append(drawBars(spec, figure.title) as unknown as HTMLElement);
-  } else {
-    box.append(el('div', { class: 'scroll' }, el('table', { class: 'plain' },
-      el('thead', {}, el('tr', {}, ...spec.header.map((h) => el('th', { scope: 'col' }, h)))),
-      el('tbody', {}, ...spec.rows.map((row) => el('tr', {}, ...row.map((cell) => el('td', {}, cell))))))));
-  }
-  tools.append(el('button', { type: 'button', title: 'Save the numbers of this figure', click: () => saveText(`${figure.id}.csv`, viewCsv(spec)) }, 'CSV'));
-  box.append(el('p', { class: 'caption' }, figure.caption(data)));
-  return { box, redraw };
+  return { figure, box, redraw: () => redraws.forEach((redraw) => redraw()) };
 }

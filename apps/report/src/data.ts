@@ -1,4 +1,4 @@
-// The data island that apps/jamscope/report.cpp writes (format "jamscope-report", schema 1). SI units; null is "not known".
+// The data island that apps/jamscope/report.cpp writes (format "jamscope-report", schema 2). SI units; null is "not known".
 
 export type Column = (number | null)[];
 
@@ -27,7 +27,8 @@ export interface Stay {
   peak_force: number | null; peak_time: number | null; peak_in_gap: boolean;
 }
 export interface EventData extends Stay {
-  number: number; first_frame: number; last_frame: number; peak_particle: number; bridged: boolean;
+  number: number; first_frame: number; last_frame: number; peak_particle: number;
+  bridged: boolean | null; // null: not known at a threshold that the page counted for itself
   members: number[]; member_count: number;
 }
 export interface TrackData extends Stay {
@@ -37,7 +38,7 @@ export interface SurvivalClassData {
   low: number | null; high: number | null; events: number; frequency: number | null; share_of_jam_time: number | null;
 }
 export interface Headline {
-  events: number; bridged: number; censored: number; tracks: number; frames: number; particles: number;
+  events: number; bridged: number | null; censored: number; tracks: number; frames: number; particles: number;
   observed_time: number | null; sampling_interval: number | null;
   jammed_time: number | null; jammed_share: number | null; jam_frequency: number | null;
   largest_force: number | null; largest_force_time: number | null; largest_force_source: string;
@@ -57,16 +58,62 @@ export interface RunData {
   walls: { name: string; kind: string; role: string; material: string; triangles: number }[];
   gap: { tip_radius: number | null; vessel_radius: number | null };
 }
+export interface Interval { value: number | null; low: number | null; high: number | null }
+export interface StepJamData {
+  start: number | null; end: number | null; duration: number | null; open_at_start: boolean; open_at_end: boolean;
+  peak_force: number | null; peak_time: number | null; peak_particle: number; site: number;
+  impulse: number | null; work: number | null; // null at a threshold that the page counted for itself
+  members: number[]; member_count: number;
+}
+export interface SurvivalData { time: Column; share: Column; low: Column; high: Column }
+export interface StepStreamData {
+  events: number; jams: StepJamData[]; rate: Interval; median: Interval;
+  jammed_time: number | null; longest: number | null; fano: number | null; survival: SurvivalData;
+}
+export type StepStreams = Partial<Record<'global' | 'particle' | 'site', StepStreamData>>;
+export interface MetricsData {
+  every: number; time: Column; curves: { name: string; unit: string; doc: string; values: Column }[];
+}
+export interface EnergyData {
+  every: number; time: Column; put_in: number | null; unexplained: number | null; curves: { name: string; values: Column }[];
+}
+export interface SceneWall {
+  name: string; kind: string; role: string; point: Column; axis: Column; radius: number; high_radius: number; hole_radius: number;
+  low: number | null; high: number | null; left_out?: string;
+  section?: number; vertices?: number; triangles?: number; spheres?: number;
+}
+export interface SceneFrame {
+  frame: number; time: number; whole: boolean; part: boolean; grains: number; contacts: number; wall_contacts: number;
+  mean_force: number; least_force: number; // N: mean of the pressing contacts; those above this one are here
+  poses: number[][];                       // of each wall: x y z, quaternion w x y z
+  jammed: number[];                        // ids at the threshold of the analysis
+  section: number;
+}
+// The 3D view; `why` says why there is none. Layout of the sections: apps/jamscope/scene_data.hpp.
+export interface SceneData {
+  why: string; low?: number[]; high?: number[]; grains?: number; grains_section?: number; walls?: SceneWall[];
+  frames: SceneFrame[]; all_frames?: number; part_reach?: number;
+}
+// Every loaded grain of every frame, for counting at other thresholds.
+export interface SamplesData { frames: number; samples: number; floor: number; by_force: boolean; section: number }
+// Every stay of a grain above the force that the run watched.
+export interface StaysData {
+  rows: number; watch_force: number; dt: number; stride: number; first_step: number; hold_off: number; shortest: number;
+  begin: number; end: number; section: number;
+}
+// One run.
 export interface ReportData {
-  format: string; schema: number; name: string; description: string;
+  name: string; description: string;
   headline: Headline;
   criteria: {
     measure: string; jam_force: number; bridge_contact_share: number | null; gap_margin: number | null;
     survival_classes: Column;
   };
   frames: FramesData; series: SeriesData | null; flow_energy: FlowEnergyData;
-  events: EventData[]; tracks: TrackData[];
+  events: EventData[]; tracks: TrackData[]; cluster_events: EventData[]; steps: StepStreams;
   survival_classes: SurvivalClassData[]; jammed_histogram: number[];
+  metrics: MetricsData; energy: EnergyData | null;
+  scene: SceneData; samples: SamplesData | null; stays: StaysData | null;
   derived: { name: string; value: string; unit: string }[];
   run: RunData; notes: string[]; warnings: string[];
   report: {
@@ -76,7 +123,7 @@ export interface ReportData {
 }
 
 // Throws an Error that says what is wrong; a page that shows half of a broken record would mislead.
-export function parseData(text: string): ReportData {
+export function parseData(text: string): ReportData[] {
   let data: unknown;
   try {
     data = JSON.parse(text);
@@ -86,10 +133,13 @@ export function parseData(text: string): ReportData {
   if (typeof data !== 'object' || data === null) throw new Error('the data of this page is not an object');
   const record = data as Record<string, unknown>;
   if (record.format !== 'jamscope-report') throw new Error('the data of this page is not a jamscope report');
-  if (record.schema !== 1) throw new Error(`this page reads schema 1 of its data, found ${String(record.schema)}`);
-  for (const part of ['headline', 'criteria', 'frames', 'flow_energy', 'run', 'report'])
-    if (typeof record[part] !== 'object' || record[part] === null) throw new Error(`the data of this page has no "${part}"`);
-  for (const part of ['events', 'tracks', 'survival_classes', 'jammed_histogram', 'derived', 'notes', 'warnings'])
-    if (!Array.isArray(record[part])) throw new Error(`the data of this page has no list "${part}"`);
-  return data as ReportData;
+  if (record.schema !== 2) throw new Error(`this page reads schema 2 of its data, found ${String(record.schema)}`);
+  if (!Array.isArray(record.runs) || record.runs.length === 0) throw new Error('the data of this page has no runs');
+  for (const run of record.runs as Record<string, unknown>[]) {
+    for (const part of ['headline', 'criteria', 'frames', 'flow_energy', 'steps', 'metrics', 'scene', 'run', 'report'])
+      if (typeof run[part] !== 'object' || run[part] === null) throw new Error(`the data of this page has no "${part}"`);
+    for (const part of ['events', 'tracks', 'cluster_events', 'survival_classes', 'jammed_histogram', 'derived', 'notes', 'warnings'])
+      if (!Array.isArray(run[part])) throw new Error(`the data of this page has no list "${part}"`);
+  }
+  return record.runs as ReportData[];
 }

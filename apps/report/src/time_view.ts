@@ -11,12 +11,16 @@ export interface Marked {
 
 export interface TimeView {
   readonly full: Range;
-  readonly events: readonly Marked[];
+  readonly events: readonly Marked[]; // shaded
+  setEvents(events: readonly Marked[]): void;
   range(): Range;
   marked(): Marked | null;
   show(range: Range, marked?: Marked | null): void;
   reset(): void;
-  listen(listener: () => void): void;
+  listen(listener: () => void): () => void; // gives what ends it
+  // A reader pointed at a time: chooses what is there, give or take.
+  choose(time: number, give: number): void;
+  onChoose(listener: (time: number, give: number) => void): void;
 }
 
 // Keeps `range` inside `full` and no shorter than a millionth of it.
@@ -32,14 +36,25 @@ export function around(event: Marked, interval: number): Range {
   return { low: event.start - margin, high: event.end + margin };
 }
 
-export function makeTimeView(full: Range, events: readonly Marked[]): TimeView {
-  const listeners: (() => void)[] = [];
+export function makeTimeView(full: Range, shaded: readonly Marked[]): TimeView {
+  const listeners = new Set<() => void>();
+  let events = shaded;
+  let chooser: (time: number, give: number) => void = () => {};
   let range = full;
   let marked: Marked | null = null;
   const tell = (): void => listeners.forEach((listener) => listener());
   return {
     full,
-    events,
+    get events() { return events; },
+    setEvents(wanted) {
+      events = wanted;
+      marked = null;
+      tell();
+    },
+    choose: (time, give) => chooser(time, give),
+    onChoose(listener) {
+      chooser = listener;
+    },
     range: () => range,
     marked: () => marked,
     show(wanted, mark) {
@@ -53,7 +68,8 @@ export function makeTimeView(full: Range, events: readonly Marked[]): TimeView {
       tell();
     },
     listen(listener) {
-      listeners.push(listener);
+      listeners.add(listener);
+      return () => void listeners.delete(listener);
     },
   };
 }

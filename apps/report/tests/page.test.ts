@@ -3,20 +3,23 @@ import { parseData } from '../src/data';
 import { csv } from '../src/numbers/csv';
 import { sorted } from '../src/tables';
 import { around, clamped, makeTimeView } from '../src/time_view';
-import { jammed } from './sample';
+import { bare, jammed } from './sample';
 
 describe('the data island', () => {
+  const island = (...runs: unknown[]): string => JSON.stringify({ format: 'jamscope-report', schema: 2, runs });
   test('is read back as written', () => {
-    expect(parseData(JSON.stringify(jammed()))).toEqual(jammed());
+    expect(parseData(island(jammed()))).toEqual([jammed()]);
+    expect(parseData(island(jammed(), bare()))).toHaveLength(2);
   });
   test('is refused with a reason when it is broken', () => {
     expect(() => parseData('')).toThrow(/not valid JSON/);
     expect(() => parseData('@JAMSCOPE_REPORT_DATA@')).toThrow(/not valid JSON/);
     expect(() => parseData('[]')).toThrow(/not a jamscope report/);
     expect(() => parseData('null')).toThrow(/not an object/);
-    expect(() => parseData(JSON.stringify({ ...jammed(), schema: 2 }))).toThrow(/schema 1 .* found 2/);
-    expect(() => parseData(JSON.stringify({ ...jammed(), events: undefined }))).toThrow(/"events"/);
-    expect(() => parseData(JSON.stringify({ ...jammed(), frames: null }))).toThrow(/"frames"/);
+    expect(() => parseData(JSON.stringify({ format: 'jamscope-report', schema: 1, runs: [jammed()] }))).toThrow(/schema 2 .* found 1/);
+    expect(() => parseData(island())).toThrow(/no runs/);
+    expect(() => parseData(island({ ...jammed(), events: undefined }))).toThrow(/"events"/);
+    expect(() => parseData(island(jammed(), { ...jammed(), frames: null }))).toThrow(/"frames"/);
   });
 });
 

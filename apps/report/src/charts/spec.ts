@@ -3,10 +3,10 @@ import type { Column } from '../data';
 
 export type Colour = 'blue' | 'vermillion' | 'green' | 'orange' | 'purple' | 'grey';
 
-// One curve over time. `low` and `high` are the edges of a band; a band belongs to the curves of its own colour.
+// One curve, over time unless the plot says otherwise. `low` and `high` are the edges of a band; a band belongs to the curves of its own colour.
 export interface Curve {
   label: string;
-  time: Column;
+  time: Column;    // or what the plot is over
   values: Column;
   colour: Colour;
   kind?: 'line' | 'steps' | 'dashes' | 'low' | 'high';
@@ -21,6 +21,8 @@ export interface TimePlot {
   threshold?: { value: number; label: string };
   fromZero?: boolean;
   whole?: boolean;   // counts: no ticks between whole numbers
+  // Over something else than time: its name and unit, and whether its axis may be or is first logarithmic.
+  across?: { quantity: string; unit: string; log?: 'offer' | 'first' };
 }
 
 export interface Bar {
@@ -55,6 +57,13 @@ export interface Missing {
   why: string;
 }
 
-export type View = TimePlot | BarPlot | TableView | Missing;
+// The same of several runs, one below the other, where they cannot share axes.
+export interface SeveralViews {
+  kind: 'several';
+  parts: { name: string; view: TimePlot | BarPlot | TableView | Missing }[];
+}
+
+export type SingleView = TimePlot | BarPlot | TableView | Missing;
+export type View = SingleView | SeveralViews;
 
 export const missing = (why: string): Missing => ({ kind: 'missing', why });

@@ -12,13 +12,13 @@ function colour(name: string): string {
 }
 
 // Curves on one x axis: instants that only one of them has leave the others undefined, which uPlot draws through.
-function joined(curves: readonly Curve[], positive: boolean): uPlot.AlignedData {
+function joined(curves: readonly Curve[], positive: boolean, positiveAcross: boolean): uPlot.AlignedData {
   const tables = new Map<Column, Curve[]>();
   for (const curve of curves) tables.set(curve.time, [...(tables.get(curve.time) ?? []), curve]);
   const parts: uPlot.AlignedData[] = [];
   const order: Curve[] = [];
   for (const [time, members] of tables) {
-    const rows = time.map((t, r) => (known(t) ? r : -1)).filter((r) => r >= 0);
+    const rows = time.map((t, r) => (known(t) && (!positiveAcross || t > 0) ? r : -1)).filter((r) => r >= 0);
     const clean = (v: number | null | undefined): number | null => (known(v) && (!positive || v > 0) ? v : null);
     parts.push([rows.map((r) => time[r]!), ...members.map((c) => rows.map((r) => clean(c.values[r])))]);
     order.push(...members);
@@ -30,11 +30,12 @@ function joined(curves: readonly Curve[], positive: boolean): uPlot.AlignedData 
 const wholeSteps = [1, 2, 5].flatMap((n) => [0, 1, 2, 3, 4, 5, 6].map((e) => n * 10 ** e)).sort((a, b) => a - b);
 
 // Powers of ten only, where finer lines would fill the plot.
-function decades(plot: uPlot, splits: (number | null)[]): (number | null)[] {
-  const { min, max } = plot.scales.y!;
+const decadesOf = (scale: 'x' | 'y') => (plot: uPlot, splits: (number | null)[]): (number | null)[] => {
+  const { min, max } = plot.scales[scale]!;
   if (!known(min) || !known(max) || max / min < 1e3) return splits;
   return splits.map((v) => (known(v) && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9 ? v : null));
-}
+};
+const decades = decadesOf('y');
 
 function logLabel(value: number): string {
   const exponent = Math.round(Math.log10(value));
@@ -55,7 +56,8 @@ function series(curve: Curve, spec: TimePlot): uPlot.Series {
     stroke: () => colour(edge ? `${curve.colour}-band` : curve.colour),
     width: edge ? 0.75 : 1.5,
     dash: curve.kind === 'dashes' ? [6, 4] : undefined,
-    paths: curve.kind === 'steps' ? uPlot.paths.stepped!({ align: 1 }) : undefined,
+    class: edge && spec.across ? 'edge' : undefined,
+    paths: curve.kind === 'steps' || (edge && spec.across) ? uPlot.paths.stepped!({ align: 1 }) : undefined,
     points: edge ? { show: false } : undefined,
     value: (_plot, v) => spec.whole ? count(v) : withUnit(v, spec.unit, 4),
   };
@@ -115,7 +117,19 @@ function drawThreshold(plot: uPlot, threshold: { value: number; label: string })
   ctx.restore();
 }
 
-function options(spec: TimePlot, log: boolean, width: number, view: TimeView): uPlot.Options {
+// A click, not a drag, on a shaded event or within a few pixels of it chooses it.
+function chooseByClick(plot: uPlot, view: TimeView): void {
+  let down = NaN;
+  plot.over.addEventListener('mousedown', (event) => { down = event.clientX; });
+  plot.over.addEventListener('mouseup', (event) => {
+    if (event.button !== 0 || !(Math.abs(event.clientX - down) < 3)) return;
+    const x = event.clientX - plot.over.getBoundingClientRect().left;
+    const time = plot.posToVal(x, 'x');
+    view.choose(time, Math.abs(plot.posToVal(x + 5, 'x') - time));
+  });
+}
+
+function options(spec: TimePlot, log: boolean, logAcross: boolean, width: number, view: TimeView): uPlot.Options {
   const scale = scaleFor(Math.max(largestOf(spec.curves), spec.threshold?.value ?? 0), spec.unit);
   const unit = log ? spec.unit : scale.unit;
   const axis: uPlot.Axis = {
@@ -138,14 +152,24 @@ function options(spec: TimePlot, log: boolean, width: number, view: TimeView): u
     const [lo, hi] = uPlot.rangeNum(a, b, 0.08, true);
     return [spec.fromZero && a >= 0 ? 0 : lo ?? a, hi ?? b];
   };
+  const across = spec.across;
+  const largestAcross = across ? Math.max(0, ...spec.curves.flatMap((c) => c.time).filter(known)) : 0;
+  const acrossScale = across && !logAcross ? scaleFor(largestAcross, across.unit) : { factor: 1, unit: across?.unit ?? 's' };
+  const acrossAxis: uPlot.Axis = across
+    ? {
+        ...axis, space: 60, label: acrossScale.unit === '' ? across.quantity : `${across.quantity} (${acrossScale.unit})`, labelSize: 18, size: 34,
+        ...(logAcross ? { grid: { ...axis.grid, filter: decadesOf('x') }, ticks: { ...axis.ticks, filter: decadesOf('x') } } : {}),
+        values: (_p, at, _a, _s, step) => (at as (number | null)[]).map((v) => (!known(v) ? '' : logAcross ? logLabel(v) : (v / acrossScale.factor).toFixed(decimals(step / acrossScale.factor)))),
+      }
+    // Room for the labels of a run of a millisecond, which have five decimals.
+    : { ...axis, space: 80, label: 'Time (s)', labelSize: 18, size: 34, values: (_p, at, _a, _s, step) => at.map((v) => v.toFixed(decimals(step)).replace('-', '−')) };
   return {
     width,
     height,
     padding: [10, 22, null, null],  // right: half of the last time label
-    scales: { x: { time: false }, y: { distr: log ? 3 : 1, log: 10, range } },
+    scales: { x: { time: false, distr: logAcross ? 3 : 1, log: 10 }, y: { distr: log ? 3 : 1, log: 10, range } },
     axes: [
-      // Room for the labels of a run of a millisecond, which have five decimals.
-      { ...axis, space: 80, label: 'Time (s)', labelSize: 18, size: 34, values: (_p, at, _a, _s, step) => at.map((v) => v.toFixed(decimals(step)).replace('-', '−')) },
+      acrossAxis,
       {
         ...axis,
         ...(log ? { grid: { ...axis.grid, filter: decades }, ticks: { ...axis.ticks, filter: decades } } : {}),
@@ -159,15 +183,16 @@ function options(spec: TimePlot, log: boolean, width: number, view: TimeView): u
       },
     ],
     series: [
-      { label: 'Time', value: (_plot, t) => (known(t) ? `${inScale(t, { factor: 1, unit: 's' }, 6)} s` : '–') },
+      across ? { label: across.quantity, value: (_plot, v) => withUnit(v, across.unit, 4) }
+        : { label: 'Time', value: (_plot, t) => (known(t) ? `${inScale(t, { factor: 1, unit: 's' }, 6)} s` : '–') },
       ...spec.curves.map((curve) => series(curve, spec)),
     ],
     bands: bands(spec.curves),
     legend: { live: true, markers: { width: 2 } },
     cursor: {
       y: false,
-      sync: { key: 'time', scales: ['x', null], setSeries: false, filters: { pub: (type) => type === 'mousemove' || type === 'mouseleave' } },
-      drag: { x: true, y: false, setScale: false },
+      ...(across ? {} : { sync: { key: 'time', scales: ['x', null] as [string, null], setSeries: false, filters: { pub: (type: string) => type === 'mousemove' || type === 'mouseleave' } } }),
+      drag: { x: true, y: false, setScale: across !== undefined },
       // Hover reads the nearest value of each curve, also where only another curve has this instant.
       dataIdx: (plot, s, index) => {
         const values = plot.data[s]!;
@@ -177,17 +202,21 @@ function options(spec: TimePlot, log: boolean, width: number, view: TimeView): u
         }
         return index;
       },
-      bind: {
-        dblclick: () => () => {
-          view.reset();
-          return null;
+      // A double click on another axis than time is uPlot's own: it shows everything.
+      ...(across ? {} : {
+        bind: {
+          dblclick: () => () => {
+            view.reset();
+            return null;
+          },
         },
-      },
+      }),
     },
     hooks: {
-      drawClear: [(plot) => drawEvents(plot, view)],
+      drawClear: across ? [] : [(plot) => drawEvents(plot, view)],
+      ready: across ? [] : [(plot) => chooseByClick(plot, view)],
       draw: [(plot) => { if (spec.threshold) drawThreshold(plot, spec.threshold); }],
-      setSelect: [
+      setSelect: across ? [] : [
         (plot) => {
           const { left, width: across } = plot.select;
           if (across < 4) return;
@@ -234,38 +263,49 @@ function zoomByKeyboard(box: HTMLElement, view: TimeView): void {
 export interface DrawnPlot {
   box: HTMLElement;
   setLog(log: boolean): void;
+  setLogAcross(log: boolean): void;
   redraw(): void;
 }
 
 export function drawTimePlot(spec: TimePlot, view: TimeView, title: string): DrawnPlot {
   const box = el('div', {
     class: 'plot', tabindex: 0, role: 'group',
-    'aria-label': `${title}, plot over time. Arrow keys move, plus and minus zoom, zero shows the whole record.`,
+    'aria-label': spec.across ? `${title}, plot over ${spec.across.quantity.toLowerCase()}.` : `${title}, plot over time. Arrow keys move, plus and minus zoom, zero shows the whole record.`,
   });
   let log = spec.log === 'first' || spec.log === 'always';
+  let logAcross = spec.across?.log === 'first';
   let plot: uPlot | null = null;
   const make = (): void => {
     const width = box.clientWidth;
     if (width < 50) return;
     plot?.destroy();
-    plot = new uPlot(options(spec, log, width, view), joined(spec.curves, log), box);
+    plot = new uPlot(options(spec, log, logAcross, width, view), joined(spec.curves, log, logAcross), box);
     const { low, high } = view.range();
-    plot.setScale('x', { min: low, max: high });
+    if (!spec.across) plot.setScale('x', { min: low, max: high });
     legendByKeyboard(box);
   };
   new ResizeObserver(() => {
     if (!plot) make();
     else if (Math.abs(plot.width - box.clientWidth) > 1) plot.setSize({ width: box.clientWidth, height });
   }).observe(box);
-  view.listen(() => {
+  const unlisten = spec.across ? null : view.listen(() => {
+    // A figure that was drawn anew leaves its old plot behind.
+    if (!box.isConnected) {
+      unlisten?.();
+      return;
+    }
     const { low, high } = view.range();
     plot?.setScale('x', { min: low, max: high });
   });
-  zoomByKeyboard(box, view);
+  if (!spec.across) zoomByKeyboard(box, view);
   return {
     box,
     setLog(wanted) {
       log = wanted;
+      make();
+    },
+    setLogAcross(wanted) {
+      logAcross = wanted;
       make();
     },
     redraw: make,

@@ -2,7 +2,7 @@
 import { withUnit } from '../numbers/format';
 import { runningMedian } from '../numbers/bins';
 import type { BladeData, Column, ReportData, SeriesData } from '../data';
-import type { Curve, View } from '../charts/spec';
+import type { Curve, SingleView } from '../charts/spec';
 import { missing } from '../charts/spec';
 import type { Figure } from './figure';
 
@@ -27,7 +27,7 @@ function prefix(blades: readonly BladeData[], blade: BladeData): string {
   return blades.length > 1 ? `${blade.name}: ` : '';
 }
 
-function loadView(data: ReportData, which: Load, quantity: string, unit: string): View {
+function loadView(data: ReportData, which: Load, quantity: string, unit: string): SingleView {
   const series = data.series;
   const blades = loadedBlades(series, which);
   if (!series || blades.length === 0) return missing(absent);
@@ -147,6 +147,29 @@ export const overlap: Figure = {
     return {
       kind: 'time', quantity: 'Overlap / radius', unit: '%', log: 'offer', fromZero: true,
       curves: [{ label: 'Largest overlap', time: series.time, values: percent, colour: 'orange' }],
+    };
+  },
+};
+
+const ledgerHues = ['blue', 'vermillion', 'green', 'orange', 'purple', 'grey'] as const;
+
+export const energyLedger: Figure = {
+  id: 'energy-ledger',
+  title: 'Energy ledger',
+  paper: '',
+  caption: () => 'What the walls put in, where it is, and where it went since the start of the run. What is left unexplained is rounding, or a fault of the program.',
+  view: (data) => {
+    const energy = data.energy;
+    if (!energy) return missing('This run kept no energy ledger ([output] energy_ledger = true in the case).');
+    // The places that matter: those above a thousandth of the largest, and always what is unexplained.
+    const size = (values: Column): number => values.reduce<number>((a, v) => (v === null ? a : Math.max(a, Math.abs(v))), 0);
+    const most = Math.max(...energy.curves.map((c) => size(c.values)));
+    const shown = energy.curves.filter((c) => size(c.values) > 1e-3 * most || c.name === 'unexplained');
+    return {
+      kind: 'time', quantity: 'Energy', unit: 'J',
+      curves: shown.map((c, k): Curve => ({
+        label: c.name, time: energy.time, values: c.values, colour: ledgerHues[k % ledgerHues.length]!, kind: k < ledgerHues.length ? 'line' : 'dashes',
+      })),
     };
   },
 };

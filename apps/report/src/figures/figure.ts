@@ -1,4 +1,4 @@
-import type { View } from '../charts/spec';
+import type { SingleView } from '../charts/spec';
 import type { ReportData } from '../data';
 
 export interface Figure {
@@ -6,5 +6,6 @@ export interface Figure {
   title: string;
   paper: string; // the figure of the paper that it answers, or empty
   caption(data: ReportData): string;
-  view(data: ReportData): View;
+  counts?: boolean; // changes with the threshold
+  view(data: ReportData): SingleView;
 }

@@ -8,6 +8,7 @@ export const compressiveForce: Figure = {
   id: 'grain-force',
   title: 'Compressive force on the grains',
   paper: 'Fig. 5',
+  counts: true,
   caption: (data) => {
     const thinned = data.frames.every > 1 ? ` ${data.frames.every} frames are joined into one point: largest of the largest, mean of the means.` : '';
     const series = data.series?.largest_force.length
@@ -38,6 +39,7 @@ export const jammedCount: Figure = {
   id: 'jammed-count',
   title: 'Jammed grains and bridges',
   paper: '',
+  counts: true,
   caption: (data) => {
     const window = data.series?.jammed.length && known(data.series.window)
       ? ` Dashed: most grains above the threshold in any step of a ${withUnit(data.series.window * data.series.every, 's')} window.`
@@ -51,8 +53,8 @@ export const jammedCount: Figure = {
     if (series && series.jammed.length > 0)
       curves.push({ label: 'jammed in any step', time: series.time, values: series.jammed, colour: 'orange', kind: 'dashes' });
     curves.push(
-      { label: 'jammed grains', time: frames.time, values: frames.jammed, colour: 'vermillion', kind: 'steps' },
-      { label: 'bridges', time: frames.time, values: frames.bridges, colour: 'blue', kind: 'steps' });
+      { label: 'jammed grains', time: frames.time, values: frames.jammed, colour: 'vermillion', kind: 'steps' });
+    if (frames.bridges.some(known)) curves.push({ label: 'bridges', time: frames.time, values: frames.bridges, colour: 'blue', kind: 'steps' });
     return { kind: 'time', quantity: 'Number', unit: '', curves, fromZero: true, whole: true };
   },
 };

@@ -1,11 +1,12 @@
 // How long jams last, how many grains they hold, where they sit (paper, Figs 9 and 12, Table 4).
-import type { Bar, BarPlot, View } from '../charts/spec';
+import type { Bar, BarPlot, Colour, Curve, SingleView } from '../charts/spec';
 import { missing } from '../charts/spec';
 import { edgeText, position } from '../charts/bar_plot';
-import type { Column, ReportData, SurvivalClassData } from '../data';
+import type { Column, ReportData, StepStreams, SurvivalClassData, SurvivalData } from '../data';
 import { histogram } from '../numbers/bins';
 import { count, known, percent, plural, scaleFor, setting, significant, withUnit } from '../numbers/format';
 import { garwood } from '../numbers/poisson';
+import { kaplanMeier } from '../recount/survival';
 import type { Figure } from './figure';
 
 const noJam = (data: ReportData): string =>
@@ -25,6 +26,7 @@ export const survivalFrequency: Figure = {
   id: 'survival-frequency',
   title: 'Frequency by survival time',
   paper: 'Fig. 9',
+  counts: true,
   caption: () => 'Jam events per second of record, by survival time. Whiskers: exact 95 % interval of Garwood for the count in each class, ' +
     'valid if events are independent.',
   view: (data) => {
@@ -52,8 +54,9 @@ export const survivalShare: Figure = {
   id: 'survival-share',
   title: 'Share of the jam time by survival time',
   paper: 'Table 4',
+  counts: true,
   caption: () => 'Which jams make up the time that something is jammed.',
-  view: (data): View => {
+  view: (data): SingleView => {
     if (data.headline.events === 0) return missing(noJam(data));
     const scale = classScale(data);
     const time = data.headline.observed_time ?? NaN;
@@ -75,6 +78,7 @@ export const jammedHistogram: Figure = {
   id: 'jammed-histogram',
   title: 'Number of grains jammed at once',
   paper: 'Fig. 12',
+  counts: true,
   caption: (data) => {
     const none = data.jammed_histogram[0] ?? 0;
     const all = data.jammed_histogram.reduce((a, b) => a + b, 0);
@@ -120,10 +124,77 @@ function binned(values: Column, unit: string, quantity: string, what: string, ma
   };
 }
 
+const hue: Record<keyof StepStreams, Colour> = { global: 'blue', particle: 'vermillion', site: 'green' };
+
+// Durations as frames see them, n D; those that the record cuts off as such.
+function ofFrames(data: ReportData): SurvivalData {
+  return kaplanMeier(data.events.filter((e) => !e.open_at_start && known(e.survival_time)).map((e) => ({ time: e.survival_time!, ended: !e.open_at_end })));
+}
+
+export const survivalCurve: Figure = {
+  id: 'survival-curve',
+  title: 'Survival of jams',
+  paper: '',
+  counts: true,
+  caption: (data) => (Object.keys(data.steps).length > 0 ? 'Of every step of the run, by stream: global, some grain is jammed; particle, each grain by itself; site, each sector and layer of the blade. '
+    : 'As frames see them: the run did not watch every step. ') +
+    'Kaplan and Meier\'s estimate; bands: pointwise 95 %. Jams that the end of the record cuts off count as censored.',
+  view: (data) => {
+    const curves: Curve[] = [];
+    const add = (label: string, s: SurvivalData, colour: Colour): void => {
+      if (s.time.length === 0) return;
+      const time = [s.time[0]! * 0.5, ...s.time]; // begins at 1, before the first end
+      const common = { time, colour };
+      curves.push(
+        { ...common, label: `${label}, band to`, values: [null, ...s.high], kind: 'high' }, { ...common, label: `${label}, band from`, values: [null, ...s.low], kind: 'low' },
+        { ...common, label, values: [1, ...s.share], kind: 'steps' });
+    };
+    for (const name of ['global', 'particle', 'site'] as const) {
+      const stream = data.steps[name];
+      if (stream) add(name, stream.survival, hue[name]);
+    }
+    if (Object.keys(data.steps).length === 0) add('events of frames', ofFrames(data), 'blue');
+    if (curves.length === 0) return missing('No jam ended in this record, so nothing is known of how long they last.');
+    return { kind: 'time', quantity: 'Share that lasts longer', unit: '', curves, fromZero: true, log: 'offer', across: { quantity: 'Duration', unit: 's', log: 'first' } };
+  },
+};
+
+// Separate stretches of a series above a threshold.
+export function stretchesAbove(values: Column, threshold: number): number {
+  let found = 0;
+  let above = false;
+  for (const v of values) {
+    const now = known(v) && v > threshold;
+    if (now && !above) ++found;
+    above = now;
+  }
+  return found;
+}
+
+export const jamsAbove: Figure = {
+  id: 'jams-above',
+  title: 'Jams above every threshold',
+  paper: '',
+  caption: () => 'Separate stretches of the largest force above each threshold. Where the curve is flat, the number of jams does not depend on the choice of the threshold.',
+  view: (data) => {
+    const sources: [string, Column, Colour][] = [['frames', data.frames.largest_force, 'blue']];
+    if (data.series?.largest_force.some(known)) sources.push(['windows of steps', data.series.largest_force, 'vermillion']);
+    const curves = sources.flatMap(([label, values, colour]): Curve[] => {
+      const most = values.reduce<number>((a, v) => (known(v) ? Math.max(a, v) : a), 0);
+      if (!(most > 0)) return [];
+      const time = Array.from({ length: 81 }, (_, k) => most * 10 ** ((k - 80) / 20));
+      return [{ label, time, values: time.map((t) => stretchesAbove(values, t)), colour, kind: 'steps' }];
+    });
+    if (curves.length === 0) return missing('The compressive forces of the grains are not known from this data.');
+    return { kind: 'time', quantity: 'Jams', unit: '', curves, fromZero: true, whole: true, log: 'offer', across: { quantity: 'Threshold', unit: 'N', log: 'first' } };
+  },
+};
+
 export const radialPosition: Figure = {
   id: 'radial-position',
   title: 'Where grains jammed',
   paper: '',
+  counts: true,
   caption: () => 'Distance of the centre of each jammed grain from the axis of the vessel when its force was largest. ' +
     'A grain in the gap has its centre near or beyond the blade tip.',
   view: (data) => {
@@ -139,6 +210,7 @@ export const jammedSpeed: Figure = {
   id: 'jammed-speed',
   title: 'Speed of jammed grains',
   paper: '',
+  counts: true,
   caption: () => 'Mean speed of each grain while it was jammed: grains held by the wall stay near zero, grains pushed by the blade move with it.',
   view: (data) => {
     if (data.tracks.length === 0) return missing(noJam(data));

@@ -56,8 +56,8 @@ export function tiles(data: ReportData): Tile[] {
     },
     {
       name: 'Events that bridge the gap',
-      value: h.events === 0 ? '–' : `${count(h.bridged)} of ${count(h.events)}`,
-      note: h.events === 0 ? 'no event' : 'force carried from blade to vessel',
+      value: h.events === 0 || h.bridged === null ? '–' : `${count(h.bridged)} of ${count(h.events)}`,
+      note: h.events === 0 ? 'no event' : h.bridged === null ? 'not counted on this page: it needs all contacts' : 'force carried from blade to vessel',
     },
     {
       name: 'Flow energy',
@@ -71,4 +71,16 @@ export function tiles(data: ReportData): Tile[] {
 export function drawHeadline(data: ReportData): HTMLElement {
   return el('dl', { class: 'tiles' }, ...tiles(data).map((tile) =>
     el('div', {}, el('dt', {}, tile.name), el('dd', { class: 'value' }, tile.value), el('dd', { class: 'note' }, tile.note))));
+}
+
+// The same of several runs, a column for each.
+export function drawComparison(runs: readonly ReportData[]): HTMLElement {
+  const columns = runs.map(tiles);
+  const names = [...new Set(columns.flatMap((column) => column.map((tile) => tile.name)))];
+  return el('section', { class: 'card', id: 'comparison' }, el('div', { class: 'scroll' }, el('table', { class: 'plain' },
+    el('thead', {}, el('tr', {}, el('th', { scope: 'col' }), ...runs.map((run) => el('th', { scope: 'col' }, run.name)))),
+    el('tbody', {}, ...names.map((name) => el('tr', {}, el('td', {}, name), ...columns.map((column) => {
+      const tile = column.find((t) => t.name === name);
+      return el('td', { title: tile?.note }, tile?.value ?? '–');
+    })))))), el('p', { class: 'caption' }, 'jamscope compare says with tests whether such runs differ.'));
 }

@@ -41,7 +41,6 @@ export function drawProvenance(data: ReportData): HTMLElement {
     ['Vessel radius', setting(run.gap.vessel_radius, 'm')],
     ['Case file, SHA-256', run.case_sha256],
   ]));
-  if (data.derived.length > 0) add('Derived numbers', pairs(data.derived.map((d): Pair => [d.name, `${d.value} ${d.unit}`.trim()])));
   add('Criteria of the analysis', pairs([
     ['Compressive force of a grain', criteria.measure],
     ['Jammed above', setting(criteria.jam_force, 'N')],

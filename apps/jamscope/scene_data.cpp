@@ -1,0 +1,544 @@
+#include "apps/jamscope/scene_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <boost/iostreams/device/back_inserter.hpp>
+#include <boost/iostreams/filter/zlib.hpp>
+#include <boost/iostreams/filtering_stream.hpp>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <set>
+
+#include "apps/jamscope/frames_in_flight.hpp"
+#include "libjam/errors.hpp"
+#include "libjam/events/every_step.hpp"
+#include "libjam/graph/contact_force.hpp"
+#include "libjam/graph/contact_graph.hpp"
+#include "libjam/jamming/compressive_force.hpp"
+#include "libjam/jamming/gap.hpp"
+#include "libjam/jamming/jam_criteria.hpp"
+
+namespace jamscope {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the sections are little-endian");
+
+using nlohmann::json;
+
+constexpr double part_reach = 4;               // mean diameters around a jammed grain
+constexpr std::size_t most_frames = 500;       // of the view
+constexpr std::size_t most_samples = 200'000;  // loaded grains of all frames; then the floor rises
+constexpr std::size_t most_stays = 100'000;
+constexpr std::size_t most_triangles = 100'000;
+constexpr std::size_t most_contacts = 40'000;  // of a frame, the strongest
+constexpr double floor_share = 0.01;           // of the jam force
+
+class Bytes {
+ public:
+  template <class T>
+  void add(const std::vector<T>& values) {
+    const auto* const from = reinterpret_cast<const char*>(values.data());
+    bytes_.append(from, values.size() * sizeof(T));
+  }
+  const std::string& all() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+std::vector<char> deflated(const std::string& bytes) {
+  namespace io = boost::iostreams;
+  std::vector<char> packed;
+  {
+    io::filtering_ostream out;
+    out.push(io::zlib_compressor(io::zlib::best_compression));  // no gzip: that has a time stamp
+    out.push(io::back_inserter(packed));
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+  return packed;
+}
+
+std::string base64(const std::vector<char>& bytes) {
+  constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  std::size_t to = 0;
+  for (std::size_t k = 0; k < bytes.size(); k += 3, to += 4) {
+    const auto byte = [&](std::size_t i) { return i < bytes.size() ? std::uint32_t{static_cast<unsigned char>(bytes[i])} : 0U; };
+    const std::uint32_t word = byte(k) << 16 | byte(k + 1) << 8 | byte(k + 2);
+    text[to] = letters[word >> 18 & 63];
+    text[to + 1] = letters[word >> 12 & 63];
+    if (k + 1 < bytes.size()) text[to + 2] = letters[word >> 6 & 63];
+    if (k + 2 < bytes.size()) text[to + 3] = letters[word & 63];
+  }
+  return text;
+}
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+json point(const jam::Vec3& v) { return {number(v.x()), number(v.y()), number(v.z())}; }
+
+struct Box {
+  jam::Vec3 low = jam::Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  void include(const jam::Vec3& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  std::uint16_t code(double v, int axis) const {
+    const double length = high[axis] - low[axis];
+    return std::uint16_t(std::lround(length > 0 ? std::clamp((v - low[axis]) / length, 0.0, 1.0) * 65535 : 0));
+  }
+};
+
+// The loaded grains of one frame.
+struct Sample {
+  jam::ParticleId particle;
+  double force;  // N
+  jam::Vec3f position;
+  float speed;  // m/s, NaN where not known
+  bool in_gap;
+};
+struct Frame {
+  double time = 0;
+  jam::BladePose blade;
+  Box box;
+  double largest_radius = 0;
+  std::vector<Sample> loaded;
+  std::vector<jam::ParticleId> id;  // of all its grains
+  std::vector<float> radius;
+};
+
+Frame examined(const jam::Snapshot& s, const jam::RunInfo& info, const jam::Criteria& criteria, double floor) {
+  Frame frame;
+  frame.time = s.time;
+  for (std::size_t w = 0; w < info.walls.size(); ++w)
+    if (info.walls[w].role == jam::WallRole::blade) {
+      const jam::WallState& state = s.walls[w];
+      frame.blade = {s.time, state.position, state.velocity, state.angular_velocity, state.orientation};
+      break;
+    }
+  const jam::Particles& p = s.particles;
+  frame.id = p.id;
+  frame.radius = p.radius;
+  for (std::size_t v = 0; v < p.size(); ++v) {
+    frame.box.include(p.position[v].cast<double>());
+    frame.largest_radius = std::max(frame.largest_radius, double{p.radius[v]});
+  }
+  const jam::ContactGraph graph(s, info.walls);
+  const std::vector<double> force = jam::compressive_forces(graph, criteria.measure);
+  const bool has_velocity = jam::present(p.velocity, p.size());
+  for (std::uint32_t v = 0; v < p.size(); ++v)
+    if (force[v] > floor)
+      frame.loaded.push_back({p.id[v], force[v], p.position[v], has_velocity ? p.velocity[v].norm() : std::numeric_limits<float>::quiet_NaN(),
+                              jam::in_gap(s, v, info, criteria)});
+  return frame;
+}
+
+// The record as the slider needs it.
+struct Record {
+  std::vector<Frame> frames;
+  double floor = 0;  // N; every grain above it is in `frames`
+  Box box;
+  std::vector<jam::ParticleId> id;  // of all grains of all frames, ascending; in most records they are the same in every frame
+  std::vector<float> radius;
+
+  void know(const std::vector<jam::ParticleId>& ids, const std::vector<float>& radii) {
+    if (ids == id) return;
+    std::vector<std::pair<jam::ParticleId, float>> both;
+    for (std::size_t k = 0; k < id.size(); ++k) both.emplace_back(id[k], radius[k]);
+    for (std::size_t k = 0; k < ids.size(); ++k)
+      if (!std::binary_search(id.begin(), id.end(), ids[k])) both.emplace_back(ids[k], radii[k]);
+    std::sort(both.begin(), both.end());
+    id.clear();
+    radius.clear();
+    for (const auto& [i, r] : both) {
+      id.push_back(i);
+      radius.push_back(r);
+    }
+  }
+};
+
+// Keeps the samples few: the floor rises until they are.
+void raise_floor(Record& record, std::size_t most) {
+  std::vector<double> forces;
+  for (const Frame& f : record.frames)
+    for (const Sample& s : f.loaded) forces.push_back(s.force);
+  if (forces.size() <= most) return;
+  std::nth_element(forces.begin(), forces.end() - std::ptrdiff_t(most), forces.end());
+  record.floor = *(forces.end() - std::ptrdiff_t(most));
+  for (Frame& f : record.frames) std::erase_if(f.loaded, [&](const Sample& s) { return !(s.force > record.floor); });
+}
+
+Record record_of(const jam::SnapshotSource& source, std::size_t first, const jam::Analysis& a, int threads) {
+  Record record;
+  record.floor = floor_share * a.criteria.jam_force;
+  std::size_t samples = 0;
+  const auto work = [&](std::size_t, const jam::Snapshot*, const jam::Snapshot& s) { return examined(s, source.info, a.criteria, floor_share * a.criteria.jam_force); };
+  for_frames_in_flight(source, first, first + a.frames.size(), threads, false, work, [&](Frame frame) {
+    std::erase_if(frame.loaded, [&](const Sample& s) { return !(s.force > record.floor); });
+    samples += frame.loaded.size();
+    if (frame.box.low.x() <= frame.box.high.x()) {
+      record.box.include(frame.box.low - jam::Vec3::Constant(frame.largest_radius));
+      record.box.include(frame.box.high + jam::Vec3::Constant(frame.largest_radius));
+    }
+    record.know(frame.id, frame.radius);
+    frame.id = {};
+    frame.radius = {};
+    record.frames.push_back(std::move(frame));
+    if (samples > 4 * most_samples) {
+      raise_floor(record, 2 * most_samples);
+      samples = 2 * most_samples;
+    }
+  });
+  raise_floor(record, most_samples);
+  return record;
+}
+
+// Frames in the order in which they are wanted; those of jams first.
+struct Wanted {
+  std::vector<std::size_t> of_jams, spread;
+};
+Wanted wanted_frames(const jam::Analysis& a) {
+  Wanted wanted;
+  std::set<std::size_t> seen;
+  const std::size_t frames = a.frames.size();
+  const auto want = [&](std::vector<std::size_t>& list, std::size_t k) {
+    if (k < frames && seen.insert(k).second) list.push_back(k);
+  };
+  const auto at = [&](double time) {
+    const auto after = std::lower_bound(a.frames.begin(), a.frames.end(), time, [](const jam::FrameSummary& f, double t) { return f.time < t; });
+    return std::size_t(after - a.frames.begin());
+  };
+  std::vector<const jam::JamEvent*> events, stays;
+  for (const jam::JamEvent& e : a.events) events.push_back(&e);
+  for (const jam::Track& t : a.tracks) stays.push_back(&t.event);
+  for (auto* list : {&events, &stays})
+    std::stable_sort(list->begin(), list->end(), [](const auto* x, const auto* y) { return x->peak_force > y->peak_force; });
+  for (const jam::JamEvent* e : events) want(wanted.of_jams, at(e->peak_time));
+  for (const jam::JamEvent* e : events) {
+    want(wanted.of_jams, e->first_frame);
+    want(wanted.of_jams, e->last_frame);
+  }
+  for (const jam::JamEvent* e : stays) want(wanted.of_jams, at(e->peak_time));
+  // Halves, quarters, eighths: wherever it stops, what there is is spread evenly.
+  if (frames > 0) {
+    want(wanted.spread, 0);
+    want(wanted.spread, frames - 1);
+    for (std::size_t parts = 2; parts / 2 < frames; parts *= 2)
+      for (std::size_t k = 1; k < parts; k += 2) want(wanted.spread, (k * (frames - 1) + parts / 2) / parts);
+  }
+  return wanted;
+}
+
+struct Shown {
+  json row;
+  std::string section;
+};
+
+// `part`: only the grains near jammed ones.
+Shown encoded(const jam::Snapshot& s, const jam::RunInfo& info, const jam::Analysis& a, std::size_t frame, const Record& record, bool part) {
+  const std::vector<jam::ParticleId>& ids = record.id;
+  const jam::Particles& p = s.particles;
+  const jam::ContactGraph graph(s, info.walls);
+  const std::vector<double> force = jam::compressive_forces(graph, a.criteria.measure);
+  const std::vector<double> limit = jam::jam_limits(graph, info, a.criteria);
+  std::vector<std::uint32_t> rows;
+  if (part) {
+    double diameter = 0;
+    for (const float r : p.radius) diameter += 2 * double{r} / double(p.size());
+    std::vector<jam::Vec3f> jammed;
+    for (std::uint32_t v = 0; v < p.size(); ++v)
+      if (force[v] > limit[v]) jammed.push_back(p.position[v]);
+    for (std::uint32_t v = 0; v < p.size(); ++v)
+      if (std::any_of(jammed.begin(), jammed.end(), [&](const jam::Vec3f& at) { return double((p.position[v] - at).norm()) < part_reach * diameter; }))
+        rows.push_back(v);
+  } else {
+    rows.resize(p.size());
+    for (std::uint32_t v = 0; v < rows.size(); ++v) rows[v] = v;
+  }
+  const bool whole = rows.size() == ids.size() && p.id == ids;
+  std::vector<std::uint32_t> place(p.size(), std::uint32_t(-1)), table;
+  for (std::uint32_t k = 0; k < rows.size(); ++k) {
+    place[rows[k]] = k;
+    table.push_back(std::uint32_t(std::lower_bound(ids.begin(), ids.end(), p.id[rows[k]]) - ids.begin()));
+  }
+  const bool has_velocity = jam::present(p.velocity, p.size());
+  std::array<std::vector<std::uint16_t>, 3> at;
+  std::vector<std::uint16_t> speeds, forces;
+  std::vector<std::uint8_t> contacts;
+  for (const std::uint32_t v : rows) {
+    for (int axis = 0; axis < 3; ++axis) at[std::size_t(axis)].push_back(record.box.code(double{p.position[v][axis]}, axis));
+    speeds.push_back(has_velocity ? log_code(double{p.velocity[v].norm()}) : log_code(std::numeric_limits<double>::quiet_NaN()));
+    forces.push_back(log_code(force[v]));
+    contacts.push_back(std::uint8_t(std::min<std::size_t>(255, graph.degree(v) + graph.wall_contacts(v).size())));
+  }
+  // Contacts above the mean of those that press, and all that carry the load of a jammed grain; the strongest where there are too many.
+  double sum = 0;
+  std::size_t pressing = 0;
+  const auto count = [&](double f) {
+    sum += f;
+    pressing += f > 0;
+  };
+  for (std::size_t c = 0; c < s.pp.size(); ++c) count(jam::repulsive_force(s.pp, c));
+  for (std::size_t c = 0; c < s.pw.size(); ++c) count(jam::repulsive_force(s.pw, c));
+  double least = pressing > 0 ? sum / double(pressing) : 0.0;
+  const double mean = least;
+  std::vector<double> above;
+  for (std::size_t c = 0; c < s.pp.size(); ++c)
+    if (const double f = jam::repulsive_force(s.pp, c); f > least) above.push_back(f);
+  if (above.size() > most_contacts) {
+    std::nth_element(above.begin(), above.begin() + std::ptrdiff_t(most_contacts), above.end(), std::greater<>());
+    least = above[most_contacts];
+  }
+  std::vector<std::uint32_t> first, second, grain;
+  std::vector<std::uint16_t> pair_force, wall_force;
+  std::array<std::vector<std::uint16_t>, 3> touch;
+  std::vector<std::uint8_t> wall;
+  for (std::size_t c = 0; c < s.pp.size(); ++c) {
+    const double f = jam::repulsive_force(s.pp, c);
+    const auto [v, w] = s.pp.row[c];
+    const std::uint32_t i = place[v], j = place[w];
+    const bool of_jam = f > 0 && force[v] > limit[v] && force[w] > limit[w];
+    if (!(f > least || of_jam) || i == std::uint32_t(-1) || j == std::uint32_t(-1)) continue;
+    first.push_back(i);
+    second.push_back(j);
+    pair_force.push_back(log_code(f));
+  }
+  const bool has_point = jam::present(s.pw.point, s.pw.size()), has_normal = jam::present(s.pw.normal, s.pw.size());
+  for (std::size_t c = 0; c < s.pw.size() && (has_point || has_normal); ++c) {
+    const double f = jam::repulsive_force(s.pw, c);
+    const std::uint32_t v = s.pw.row[c], i = place[v];
+    if (!(f > least || (f > 0 && force[v] > limit[v])) || i == std::uint32_t(-1)) continue;
+    const jam::Vec3f end = has_point ? s.pw.point[c] : jam::Vec3f(p.position[v] + p.radius[v] * s.pw.normal[c]);
+    grain.push_back(i);
+    wall.push_back(s.pw.wall[c]);
+    for (int axis = 0; axis < 3; ++axis) touch[std::size_t(axis)].push_back(record.box.code(double{end[axis]}, axis));
+    wall_force.push_back(log_code(f));
+  }
+  Bytes bytes;
+  if (!whole) bytes.add(table);
+  for (const auto& axis : at) bytes.add(axis);
+  bytes.add(speeds);
+  bytes.add(forces);
+  bytes.add(contacts);
+  bytes.add(first);
+  bytes.add(second);
+  bytes.add(pair_force);
+  bytes.add(grain);
+  bytes.add(wall);
+  for (const auto& axis : touch) bytes.add(axis);
+  bytes.add(wall_force);
+  Shown shown;
+  shown.row = {{"frame", frame}, {"time", s.time}, {"whole", whole}, {"part", part}, {"grains", rows.size()}, {"contacts", first.size()},
+               {"wall_contacts", grain.size()}, {"mean_force", mean}, {"least_force", least}, {"poses", json::array()}};
+  for (const jam::WallState& w : s.walls) {
+    const auto& q = w.orientation;
+    shown.row["poses"].push_back({w.position.x(), w.position.y(), w.position.z(), q.w(), q.x(), q.y(), q.z()});
+  }
+  shown.row["jammed"] = json::array();
+  for (const jam::Track& track : a.tracks)
+    if (track.event.first_frame <= frame && frame <= track.event.last_frame) shown.row["jammed"].push_back(track.particle);
+  shown.section = base64(deflated(bytes.all()));
+  return shown;
+}
+
+const char* role_name(jam::WallRole role) {
+  return role == jam::WallRole::blade ? "blade" : role == jam::WallRole::vessel ? "vessel" : "other";
+}
+
+class Sections {
+ public:
+  explicit Sections(SceneData& data, std::size_t room) : data_(data), room_(room) {}
+  bool fits(const std::string& section, double share = 1) const { return used_ + section.size() <= std::size_t(share * double(room_)); }
+  std::size_t add(std::string section) {
+    used_ += section.size();
+    data_.sections.push_back(std::move(section));
+    return data_.sections.size() - 1;
+  }
+
+ private:
+  SceneData& data_;
+  std::size_t room_, used_ = 0;
+};
+
+json walls_json(const jam::RunInfo& info, Sections& sections) {
+  json walls = json::array();
+  for (const jam::Wall& w : info.walls) {
+    json row{{"name", w.name}, {"kind", w.kind}, {"role", role_name(w.role)}, {"point", point(w.point)}, {"axis", point(w.axis)}, {"radius", w.radius},
+             {"high_radius", w.high_radius}, {"hole_radius", w.hole_radius}, {"low", number(w.low)}, {"high", number(w.high)}};
+    if (!w.triangles.empty()) {
+      if (w.triangles.size() > most_triangles) {
+        row["left_out"] = fmt::format("{} triangles are too many for this page", w.triangles.size());
+      } else {
+        std::vector<float> vertices;
+        std::vector<std::uint32_t> triangles;
+        for (const jam::Vec3& v : w.vertices)
+          for (int axis = 0; axis < 3; ++axis) vertices.push_back(float(v[axis]));
+        for (const auto& t : w.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+        Bytes bytes;
+        bytes.add(vertices);
+        bytes.add(triangles);
+        row["vertices"] = w.vertices.size();
+        row["triangles"] = w.triangles.size();
+        row["section"] = sections.add(base64(deflated(bytes.all())));
+      }
+    }
+    if (!w.sphere_centre.empty()) {
+      std::vector<float> spheres;
+      for (std::size_t k = 0; k < w.sphere_centre.size(); ++k) {
+        for (int axis = 0; axis < 3; ++axis) spheres.push_back(float(w.sphere_centre[k][axis]));
+        spheres.push_back(float(w.sphere_radius[k]));
+      }
+      Bytes bytes;
+      bytes.add(spheres);
+      row["spheres"] = w.sphere_centre.size();
+      row["section"] = sections.add(base64(deflated(bytes.all())));
+    }
+    walls.push_back(row);
+  }
+  return walls;
+}
+
+json samples_json(const Record& record, const jam::Analysis& a, Sections& sections) {
+  std::vector<double> time, force;
+  std::vector<std::uint32_t> count, particle;
+  std::array<std::vector<std::uint16_t>, 3> at;
+  std::vector<std::uint16_t> speed;
+  std::vector<std::uint8_t> in_gap;
+  for (const Frame& f : record.frames) {
+    time.push_back(f.time);
+    count.push_back(std::uint32_t(f.loaded.size()));
+    for (const Sample& s : f.loaded) {
+      particle.push_back(s.particle);
+      force.push_back(s.force);
+      for (int axis = 0; axis < 3; ++axis) at[std::size_t(axis)].push_back(record.box.code(double{s.position[axis]}, axis));
+      speed.push_back(log_code(double{s.speed}));
+      in_gap.push_back(s.in_gap);
+    }
+  }
+  Bytes bytes;
+  bytes.add(time);
+  bytes.add(count);
+  bytes.add(particle);
+  bytes.add(force);
+  for (const auto& axis : at) bytes.add(axis);
+  bytes.add(speed);
+  bytes.add(in_gap);
+  std::string section = base64(deflated(bytes.all()));
+  if (!sections.fits(section)) return nullptr;
+  return {{"frames", time.size()}, {"samples", particle.size()}, {"floor", record.floor}, {"by_force", jam::criterion_of(a.criteria).name == "compressive_force"},
+          {"section", sections.add(std::move(section))}};
+}
+
+json stays_json(const Record& record, const jam::RunInfo& info, const jam::Analysis& a, const jam::Series& series, Sections& sections) {
+  if (a.every_step.empty()) return nullptr;
+  const jam::Excursions stays = jam::last_word(series.excursions);
+  if (stays.size() > most_stays) return nullptr;
+  std::vector<jam::BladePose> poses;
+  for (const Frame& f : record.frames) poses.push_back(f.blade);
+  const jam::Sites sites{.z_low = info.gap.z_low, .z_high = info.gap.z_high};
+  std::vector<double> first, last, peak;
+  std::vector<std::uint8_t> site;
+  for (std::size_t k = 0; k < stays.size(); ++k) {
+    first.push_back(double(stays.first_step[k]));
+    last.push_back(double(stays.last_step[k]));
+    peak.push_back(double(stays.peak_step[k]));
+    site.push_back(std::uint8_t(sites.of(jam::in_blade_frame(poses, double(stays.peak_step[k]) * info.dt, stays.peak_position[k].cast<double>()))));
+  }
+  Bytes bytes;
+  bytes.add(stays.particle);
+  bytes.add(first);
+  bytes.add(last);
+  bytes.add(peak);
+  bytes.add(stays.peak_force);
+  bytes.add(site);
+  bytes.add(stays.open);
+  std::string section = base64(deflated(bytes.all()));
+  if (!sections.fits(section)) return nullptr;
+  return {{"rows", stays.size()}, {"watch_force", info.watch_force}, {"dt", info.dt}, {"stride", info.watch_stride},
+          {"first_step", a.frames.empty() ? 0 : a.frames.front().step}, {"hold_off", a.criteria.hold_off}, {"shortest", a.criteria.shortest_jam},
+          {"begin", a.frames.empty() ? 0.0 : double(a.frames.front().step) * info.dt}, {"end", series.time.empty() ? 0.0 : series.time.back()},
+          {"section", sections.add(std::move(section))}};
+}
+
+// The first frame of the source that the analysis has; nothing where they do not belong together.
+std::optional<std::size_t> first_frame(const jam::SnapshotSource& source, const jam::Analysis& a) {
+  if (a.frames.size() > source.frames || a.frames.empty()) return std::nullopt;
+  std::size_t low = 0, high = source.frames - a.frames.size();
+  if (low == high) return source.read(0).step == a.frames.front().step ? std::optional<std::size_t>(0) : std::nullopt;
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (source.read(middle).time < a.frames.front().time)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return source.read(low).time == a.frames.front().time ? std::optional<std::size_t>(low) : std::nullopt;
+}
+
+}  // namespace
+
+std::uint16_t log_code(double value) {
+  if (std::isnan(value)) return 65535;
+  if (!(value > 1e-12)) return 0;
+  return std::uint16_t(1 + std::lround((std::log10(std::min(value, 1e6)) + 12) * 65533 / 18));
+}
+
+double from_log_code(std::uint16_t code) {
+  if (code == 65535) return std::numeric_limits<double>::quiet_NaN();
+  return code == 0 ? 0.0 : std::pow(10, (code - 1) * 18.0 / 65533 - 12);
+}
+
+SceneData no_scene(const std::string& why) {
+  SceneData data;
+  data.view = {{"why", why}, {"frames", json::array()}};
+  return data;
+}
+
+SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& a, const jam::Series& series, std::size_t room, int threads) {
+  if (a.frames.empty()) return no_scene("The record holds no frames.");
+  try {
+    const std::optional<std::size_t> first = first_frame(source, a);
+    if (!first) return no_scene("The snapshots that were found are not those of this analysis.");
+    const Record record = record_of(source, *first, a, threads);
+    if (!(record.box.low.x() < record.box.high.x())) return no_scene("The frames hold no grains.");
+    SceneData data;
+    Sections sections(data, room);
+    data.samples = samples_json(record, a, sections);
+    data.stays = stays_json(record, source.info, a, series, sections);
+
+    const Wanted wanted = wanted_frames(a);
+    Bytes grains;
+    grains.add(record.id);
+    grains.add(record.radius);
+    const std::size_t grains_section = sections.add(base64(deflated(grains.all())));
+    const json walls = walls_json(source.info, sections);
+
+    std::vector<json> rows;
+    const auto show = [&](std::size_t frame, bool part, double share) {
+      if (rows.size() >= most_frames) return false;
+      Shown shown = encoded(source.read(*first + frame), source.info, a, frame, record, part);
+      if (!sections.fits(shown.section, share)) return false;
+      shown.row["section"] = sections.add(std::move(shown.section));
+      rows.push_back(std::move(shown.row));
+      return true;
+    };
+    bool whole = true;
+    for (const std::size_t frame : wanted.of_jams) {
+      whole = whole && show(frame, false, 0.5);
+      if (!whole && !show(frame, true, 0.75)) break;
+    }
+    for (const std::size_t frame : wanted.spread)
+      if (!show(frame, false, 1)) break;
+    std::sort(rows.begin(), rows.end(), [](const json& x, const json& y) { return x["frame"].get<std::size_t>() < y["frame"].get<std::size_t>(); });
+    data.view = {{"why", ""}, {"low", point(record.box.low)}, {"high", point(record.box.high)}, {"grains", record.id.size()}, {"grains_section", grains_section},
+                 {"walls", walls}, {"frames", rows}, {"all_frames", a.frames.size()}, {"part_reach", part_reach}};
+    return data;
+  } catch (const jam::DataError& error) {
+    return no_scene(fmt::format("The snapshots could not be read: {}", error.what()));
+  }
+}
+
+}  // namespace jamscope
