@@ -1,4 +1,5 @@
-// How libjam's structs stand in its result files, for results_file.cpp and partial_file.cpp. A table is a group with one array per column.
+// How libjam's structs stand in its result files, for results_file.cpp and partial_file.cpp, and in the arrays of the Python module. A table is a
+// group with one array per column.
 #pragma once
 #include <array>
 #include <cstdint>

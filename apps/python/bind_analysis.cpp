@@ -94,17 +94,11 @@ Analysed analyze_run(const std::shared_ptr<Run>& run, const std::vector<std::str
   const FrameRange range{frames ? frames->first : 0, frames ? frames->second : run->source.frames};
   if (range.last > run->source.frames || range.first >= range.last)
     throw UsageError(fmt::format("frames = ({}, {}), expected the first below the second and that at most {}, the number of frames", range.first, range.last, run->source.frames));
-  // Files are read under the interpreter's lock, as by everyone else in this process; the rest needs none.
-  jam::SnapshotSource source = run->source;
-  source.read = [&run](std::size_t k) {
-    const py::gil_scoped_acquire lock;
-    return run->source.read(k);
-  };
   const KeepThreads keep;
   auto analysed = std::make_shared<AnalysedRun>();
   {
     const py::gil_scoped_release unlocked;
-    const jam::PartialAnalysis part = examine_frames(source, pipeline, range, thread_count(threads), [](const jam::FrameSummary&) {
+    const jam::PartialAnalysis part = examine_frames(run->source, pipeline, range, thread_count(threads), [](const jam::FrameSummary&) {
       const py::gil_scoped_acquire lock;
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     });

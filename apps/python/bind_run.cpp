@@ -374,6 +374,11 @@ void bind_run(py::module_& m) {
       [](const std::vector<std::string>& paths, const std::string& map, const std::string& blade, const std::string& vessel) {
         auto run = std::make_shared<Run>();
         run->source = open_stored_run({paths, map, blade, vessel});
+        // HDF5 does one thing at a time: whoever reads holds the interpreter's lock, as h5py does, also where an analysis has let go of it.
+        run->source.read = [read = std::move(run->source.read)](std::size_t k) {
+          const py::gil_scoped_acquire lock;
+          return read(k);
+        };
         run->info = std::make_shared<const jam::RunInfo>(run->source.info);
         return run;
       },
