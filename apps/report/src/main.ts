@@ -196,7 +196,7 @@ function draw(all: readonly ReportData[], page: HTMLElement): void {
 
   const links: [string, string][] = [
     ['scene', '3D view'], ['overview', 'Overview'], ['threshold', 'Threshold'], ['timeline', 'Timeline'], ['over-time', 'Over time'], ['events', 'Events'], ['steps', 'Every step'],
-    ...groups.slice(1).map((g): [string, string] => [g.id, g.title]), ['metrics', 'Contact network'], ['tracks', 'Tracks'], ['provenance', 'Provenance'], ['conventions', 'Conventions'],
+    ...groups.slice(1).map((g): [string, string] => [g.id, g.title]), ['metrics', 'Network'], ['tracks', 'Tracks'], ['provenance', 'Provenance'], ['conventions', 'Conventions'],
   ];
   const chooser = el('select', { change: () => { at = Number(chooser.value); fillRun(); } }, ...all.map((data, k) => el('option', { value: k }, data.name || `run ${k + 1}`)));
   const overTime = sections.shift()!;

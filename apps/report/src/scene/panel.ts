@@ -224,15 +224,15 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     select<Chains>('Force chains', [['mean', 'above the mean'], ['strong', 'above 5 × the mean'], ['bridges', 'bridging clusters'], ['none', 'none']], look.chains, (v) => { look.chains = v; refresh(); }),
     tick('Cut away', look.cut, (v) => { look.cut = v; refresh(); }),
     tick('Vessel', look.vessel, (v) => { look.vessel = v; refresh(); }),
-    bladeChoice,
-    el('button', { type: 'button', click: () => viewer?.reset() }, 'Reset view'));
+    bladeChoice);
   const whole = frames.length === scene.all_frames ? 'All frames of the record are here' : `${count(frames.length)} of ${count(scene.all_frames)} frames are here: those of jams, strongest first, then some spread evenly`;
   box.append(
     controls,
     el('div', { class: 'scene-body' }, stage, el('aside', {}, legend, record)),
     el('div', { class: 'transport' }, play,
       el('button', { type: 'button', 'aria-label': 'Frame before', click: () => step(-1) }, '‹'), slider,
-      el('button', { type: 'button', 'aria-label': 'Next frame', click: () => step(1) }, '›'), note),
+      el('button', { type: 'button', 'aria-label': 'Next frame', click: () => step(1) }, '›'), note,
+      el('button', { type: 'button', click: () => viewer?.reset() }, 'Reset view')),
     el('p', { class: 'caption' }, `${whole}. Drag to turn, wheel to zoom, right button to move, click a grain for its record. With the view in focus: arrow keys turn, + and − zoom, ` +
       'comma and full stop change the frame, space plays, R resets.' +
       (roles.includes('vessel') ? ' The near side of the vessel is cut away; so is the near half of the bed, except for jammed grains.' : '')));
