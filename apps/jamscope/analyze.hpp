@@ -29,10 +29,6 @@ struct AnalyzeOptions {
 // libraries, and UsageError.
 int analyze(const AnalyzeOptions& options);
 
-struct FrameRange {
-  std::size_t first = 0, last = 0;  // [first, last)
-};
-
 // What is found in these frames of a stored run, up to `threads` of them examined at a time, and the rows of the series that came with them.
 // `seen` is called for each frame, in order; what it throws comes out here.
 jam::PartialAnalysis examine_frames(const jam::SnapshotSource& source, const jam::Pipeline& pipeline, FrameRange range, int threads,

@@ -32,6 +32,25 @@ void assign_role(std::vector<jam::Wall>& walls, const std::string& name, jam::Wa
   }
 }
 
+FrameRange frame_range(const std::string& text, std::size_t frames) {
+  if (text.empty()) return {0, frames};
+  const auto refuse = [&](const std::string& expected) -> UsageError {
+    return UsageError(fmt::format("--frames {}: expected {}; there are {} frames", text, expected, frames));
+  };
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) throw refuse("A:B, from frame A to before frame B");
+  const auto number = [&](const std::string& part, std::size_t left_out) {
+    if (part.empty()) return left_out;
+    std::size_t value = 0;
+    const auto [end, problem] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (problem != std::errc() || end != part.data() + part.size()) throw refuse("two numbers of frames");
+    return value;
+  };
+  const FrameRange range{number(text.substr(0, colon), 0), std::min(number(text.substr(colon + 1), frames), frames)};
+  if (range.first >= range.last) throw refuse("the first below the second and below the number of frames");
+  return range;
+}
+
 jam::SnapshotSource open_stored_run(const InputOptions& options) {
   for (const std::string& path : options.paths) {
     std::error_code error;

@@ -17,6 +17,14 @@ struct InputOptions {
 // Throws jam::DataError, dem::CaseError (map file) and UsageError (no wall of that name).
 jam::SnapshotSource open_stored_run(const InputOptions& options);
 
+// Frames from `first` to before `last`.
+struct FrameRange {
+  std::size_t first = 0, last = 0;
+};
+
+// "A:B": from frame A to before frame B, either may be left out; empty: all. Throws UsageError.
+FrameRange frame_range(const std::string& text, std::size_t frames);
+
 // Gives the role to the wall of this name and takes it from every other one. Throws UsageError.
 void assign_role(std::vector<jam::Wall>& walls, const std::string& name, jam::WallRole role);
 
