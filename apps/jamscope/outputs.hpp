@@ -50,8 +50,9 @@ void write_text_file(const std::string& path, const std::string& text);
 ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts, const jam::Criteria& criteria);
 
 // All result files. The folder must exist; other files in it are left alone. `snapshots`: the frames of the analysis, for the report; null where
-// they are not at hand.
+// they are not at hand. `snapshot_file`: where they are stored; empty: in no single file.
 void write_outputs(const std::string& folder, const jam::RunInfo& info, const jam::Analysis& analysis,
-                   const jam::Series& series, const RunFacts& facts, const jam::SnapshotSource* snapshots, int threads);
+                   const jam::Series& series, const RunFacts& facts, const jam::SnapshotSource* snapshots,
+                   const std::string& snapshot_file, int threads);
 
 }  // namespace jamscope

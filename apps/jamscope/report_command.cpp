@@ -30,7 +30,11 @@ std::string option_value(const std::vector<std::string>& words, const std::strin
 }
 
 // The snapshots that results were made from: the files the analysis read, from the current folder or from beside the results; or run.h5 among them.
-std::optional<jam::SnapshotSource> snapshots_of(const fs::path& folder, const RunFacts& facts) {
+struct FoundSnapshots {
+  jam::SnapshotSource source;
+  std::string file;  // empty where they are several
+};
+std::optional<FoundSnapshots> snapshots_of(const fs::path& folder, const RunFacts& facts) {
   std::vector<InputOptions> candidates;
   const auto add = [&](const fs::path& base) {
     InputOptions input;
@@ -45,7 +49,7 @@ std::optional<jam::SnapshotSource> snapshots_of(const fs::path& folder, const Ru
   candidates.push_back({{(folder / "run.h5").string()}, "", "", ""});
   for (const InputOptions& input : candidates) {
     try {
-      return open_stored_run(input);
+      return FoundSnapshots{open_stored_run(input), input.paths.size() == 1 ? input.paths.front() : std::string()};
     } catch (const jam::DataError&) {
     } catch (const dem::CaseError&) {
     } catch (const UsageError&) {
@@ -71,13 +75,14 @@ StoredResults read_folder(const std::string& name, std::size_t room, int threads
   r.analysis = jam::read_results(folder / "jam.h5");
   const std::string summary = (folder / "summary.json").string();
   r.facts = facts_of_summary(read_text_file(summary), summary);
-  if (const auto source = snapshots_of(folder, r.facts)) {
+  if (const auto found = snapshots_of(folder, r.facts)) {
+    const jam::SnapshotSource* const source = &found->source;
     r.info = source->info;
     r.series = source->series;
     // jam.h5 holds the jams of every step, not what they say in all.
     const double begin = r.analysis.frames.empty() ? 0.0 : double(r.analysis.frames.front().step) * r.info.dt;
     for (auto& stream : r.analysis.every_step) stream.statistics = jam::jam_statistics(stream.jams, begin, r.series.time.empty() ? begin : r.series.time.back());
-    r.scene = scene_data(*source, r.analysis, r.series, room, threads);
+    r.scene = scene_data(*source, r.analysis, r.series, room, threads, found->file);
   } else {
     r.scene = no_scene("The snapshots of these results were found neither beside them nor where the analysis read them.");
     const auto& frames = r.analysis.frames;

@@ -20,7 +20,9 @@
 #include "libjam/graph/contact_graph.hpp"
 #include "libjam/jamming/compressive_force.hpp"
 #include "libjam/jamming/gap.hpp"
+#include "libjam/jamming/jam_clusters.hpp"
 #include "libjam/jamming/jam_criteria.hpp"
+#include "libjam/snapshot/reader.hpp"
 
 namespace jamscope {
 namespace {
@@ -31,6 +33,7 @@ using nlohmann::json;
 
 constexpr double part_reach = 4;               // mean diameters around a jammed grain
 constexpr std::size_t most_frames = 500;       // of the view
+constexpr std::size_t most_fine_frames = 200;  // of those, from capture.h5
 constexpr std::size_t most_samples = 200'000;  // loaded grains of all frames; then the floor rises
 constexpr std::size_t most_stays = 100'000;
 constexpr std::size_t most_triangles = 100'000;
@@ -196,11 +199,28 @@ Record record_of(const jam::SnapshotSource& source, std::size_t first, const jam
   return record;
 }
 
+// The frames of capture.h5, where it stands beside the run and is of it.
+struct FineFrames {
+  std::optional<jam::SnapshotIndex> index;
+  std::vector<double> time;
+};
+FineFrames fine_frames(const std::filesystem::path& run_file, const jam::RunInfo& info) {
+  FineFrames fine;
+  if (run_file.empty()) return fine;
+  const std::filesystem::path file = std::filesystem::path(run_file).replace_filename("capture.h5");
+  if (!jam::is_jamscope_file(file)) return fine;
+  jam::SnapshotIndex index = jam::read_index(file);
+  if (index.info.created_utc != info.created_utc || index.info.case_sha256 != info.case_sha256) return fine;
+  for (const jam::schema::FrameRow& row : index.frames) fine.time.push_back(row.time);
+  fine.index = std::move(index);
+  return fine;
+}
+
 // Frames in the order in which they are wanted; those of jams first.
 struct Wanted {
-  std::vector<std::size_t> of_jams, spread;
+  std::vector<std::size_t> of_jams, fine, spread;
 };
-Wanted wanted_frames(const jam::Analysis& a) {
+Wanted wanted_frames(const jam::Analysis& a, const std::vector<double>& fine_times) {
   Wanted wanted;
   std::set<std::size_t> seen;
   const std::size_t frames = a.frames.size();
@@ -222,6 +242,19 @@ Wanted wanted_frames(const jam::Analysis& a) {
     want(wanted.of_jams, e->last_frame);
   }
   for (const jam::JamEvent* e : stays) want(wanted.of_jams, at(e->peak_time));
+  // Jams of single grains that fall between two frames.
+  std::vector<const jam::StepJam*> jams;
+  if (a.every_step.size() > 1)
+    for (const jam::StepJam& j : a.every_step[1].jams) jams.push_back(&j);
+  std::stable_sort(jams.begin(), jams.end(), [](const auto* x, const auto* y) { return x->peak_force > y->peak_force; });
+  std::set<std::size_t> fine;
+  for (const jam::StepJam* j : jams) {
+    if (const std::size_t k = at(j->start); k < frames && a.frames[k].time <= j->end) continue;
+    std::size_t best = fine_times.size();
+    for (auto t = std::lower_bound(fine_times.begin(), fine_times.end(), j->start); t != fine_times.end() && *t <= j->end; ++t)
+      if (best == fine_times.size() || std::abs(*t - j->peak_time) < std::abs(fine_times[best] - j->peak_time)) best = std::size_t(t - fine_times.begin());
+    if (best < fine_times.size() && fine.size() < most_fine_frames && fine.insert(best).second) wanted.fine.push_back(best);
+  }
   // Halves, quarters, eighths: wherever it stops, what there is is spread evenly.
   if (frames > 0) {
     want(wanted.spread, 0);
@@ -237,8 +270,8 @@ struct Shown {
   std::string section;
 };
 
-// `part`: only the grains near jammed ones.
-Shown encoded(const jam::Snapshot& s, const jam::RunInfo& info, const jam::Analysis& a, std::size_t frame, const Record& record, bool part) {
+// `part`: only the grains near jammed ones. `fine`: of capture.h5, so that the samples do not know it.
+Shown encoded(const jam::Snapshot& s, const jam::RunInfo& info, const jam::Analysis& a, std::size_t frame, const Record& record, bool part, bool fine) {
   const std::vector<jam::ParticleId>& ids = record.id;
   const jam::Particles& p = s.particles;
   const jam::ContactGraph graph(s, info.walls);
@@ -331,15 +364,27 @@ Shown encoded(const jam::Snapshot& s, const jam::RunInfo& info, const jam::Analy
   for (const auto& axis : touch) bytes.add(axis);
   bytes.add(wall_force);
   Shown shown;
-  shown.row = {{"frame", frame}, {"time", s.time}, {"whole", whole}, {"part", part}, {"grains", rows.size()}, {"contacts", first.size()},
+  shown.row = {{"frame", frame}, {"time", s.time}, {"fine", fine}, {"whole", whole}, {"part", part}, {"grains", rows.size()}, {"contacts", first.size()},
                {"wall_contacts", grain.size()}, {"mean_force", mean}, {"least_force", least}, {"poses", json::array()}};
   for (const jam::WallState& w : s.walls) {
     const auto& q = w.orientation;
     shown.row["poses"].push_back({w.position.x(), w.position.y(), w.position.z(), q.w(), q.x(), q.y(), q.z()});
   }
-  shown.row["jammed"] = json::array();
-  for (const jam::Track& track : a.tracks)
-    if (track.event.first_frame <= frame && frame <= track.event.last_frame) shown.row["jammed"].push_back(track.particle);
+  // Who is jammed, by the criterion of the analysis, in which of the clusters, and which of these bridge blade and vessel.
+  for (const char* name : {"jammed", "cluster", "bridges"}) shown.row[name] = json::array();
+  const std::vector<jam::Cluster> clusters = jam::jam_clusters(graph, jam::jammed_particles(graph, force, info, a.criteria), a.criteria, 0);
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    for (const jam::ParticleId id : clusters[k].members) {
+      shown.row["jammed"].push_back(id);
+      shown.row["cluster"].push_back(k);
+    }
+    shown.row["bridges"].push_back(clusters[k].bridges);
+  }
+  if (fine) {
+    shown.row["loaded"] = json::array();
+    for (std::size_t v = 0; v < p.size(); ++v)
+      if (force[v] > record.floor) shown.row["loaded"].push_back({p.id[v], force[v]});
+  }
   shown.section = base64(deflated(bytes.all()));
   return shown;
 }
@@ -497,7 +542,8 @@ SceneData no_scene(const std::string& why) {
   return data;
 }
 
-SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& a, const jam::Series& series, std::size_t room, int threads) {
+SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& a, const jam::Series& series, std::size_t room, int threads,
+                     const std::filesystem::path& file) {
   if (a.frames.empty()) return no_scene("The record holds no frames.");
   try {
     const std::optional<std::size_t> first = first_frame(source, a);
@@ -509,7 +555,8 @@ SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& a, 
     data.samples = samples_json(record, a, sections);
     data.stays = stays_json(record, source.info, a, series, sections);
 
-    const Wanted wanted = wanted_frames(a);
+    const FineFrames fine = fine_frames(file, source.info);
+    const Wanted wanted = wanted_frames(a, fine.time);
     Bytes grains;
     grains.add(record.id);
     grains.add(record.radius);
@@ -517,22 +564,27 @@ SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& a, 
     const json walls = walls_json(source.info, sections);
 
     std::vector<json> rows;
-    const auto show = [&](std::size_t frame, bool part, double share) {
-      if (rows.size() >= most_frames) return false;
-      Shown shown = encoded(source.read(*first + frame), source.info, a, frame, record, part);
-      if (!sections.fits(shown.section, share)) return false;
+    const auto add = [&](Shown shown, double share) {
+      if (rows.size() >= most_frames || !sections.fits(shown.section, share)) return false;
       shown.row["section"] = sections.add(std::move(shown.section));
       rows.push_back(std::move(shown.row));
       return true;
     };
     bool whole = true;
-    for (const std::size_t frame : wanted.of_jams) {
-      whole = whole && show(frame, false, 0.5);
-      if (!whole && !show(frame, true, 0.75)) break;
+    // Whole while there is room for it, then part; false where not even that fits.
+    const auto add_jam = [&](const jam::Snapshot& s, std::size_t frame, bool is_fine) {
+      whole = whole && add(encoded(s, source.info, a, frame, record, false, is_fine), 0.5);
+      return whole || add(encoded(s, source.info, a, frame, record, true, is_fine), 0.75);
+    };
+    for (const std::size_t frame : wanted.of_jams)
+      if (!add_jam(source.read(*first + frame), frame, false)) break;
+    for (const std::size_t k : wanted.fine) {
+      const auto after = std::upper_bound(a.frames.begin(), a.frames.end(), fine.time[k], [](double t, const jam::FrameSummary& f) { return t < f.time; });
+      if (!add_jam(jam::read_frame(*fine.index, k), std::size_t(std::max<std::ptrdiff_t>(after - a.frames.begin() - 1, 0)), true)) break;
     }
     for (const std::size_t frame : wanted.spread)
-      if (!show(frame, false, 1)) break;
-    std::sort(rows.begin(), rows.end(), [](const json& x, const json& y) { return x["frame"].get<std::size_t>() < y["frame"].get<std::size_t>(); });
+      if (!add(encoded(source.read(*first + frame), source.info, a, frame, record, false, false), 1)) break;
+    std::sort(rows.begin(), rows.end(), [](const json& x, const json& y) { return x["time"].get<double>() < y["time"].get<double>(); });
     data.view = {{"why", ""}, {"low", point(record.box.low)}, {"high", point(record.box.high)}, {"grains", record.id.size()}, {"grains_section", grains_section},
                  {"walls", walls}, {"frames", rows}, {"all_frames", a.frames.size()}, {"part_reach", part_reach}};
     return data;

@@ -1,8 +1,9 @@
 // What the report's 3D view and its threshold slider are made of: a bounded choice of frames, and of every frame the grains under load.
 //
 // Which frames: first, of each jam the frame in which its force was largest, strongest jam first, then its first and its last frame, then the
-// peaks of the stays of single grains; then frames evenly spread over the record. They are taken in this order until the room is used. Jams
-// get whole frames while these take no more than half of the room; after that only the grains near jammed ones are kept (`part_reach`).
+// peaks of the stays of single grains; then, of jams that only every step saw, the frame of capture.h5 nearest to the peak, where there is one within
+// the jam; then frames evenly spread over the record. They are taken in this order until the room is used. Jams get whole frames while
+// these take no more than half of the room; after that only the grains near jammed ones are kept (`part_reach`).
 //
 // Where they stand: each frame is a section of the page of its own, zlib's deflate in base64, so that the page unpacks what it shows and nothing else.
 // Numbers are little-endian, each array whole before the next:
@@ -19,6 +20,7 @@
 //
 // A code is 0 for nothing, 65535 for not known, else 1 + round((log10(v) + 12) 65533 / 18): 1e-12 to 1e6 with 0.03 %.
 #pragma once
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -35,8 +37,10 @@ struct SceneData {
   std::vector<std::string> sections;  // base64; the rows that the three name
 };
 
-// Frames of `source` that the analysis is of. `room`: bytes that the sections may take. Where a frame cannot be read, the view says why.
-SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& analysis, const jam::Series& series, std::size_t room, int threads);
+// Frames of `source` that the analysis is of. `room`: bytes that the sections may take. `file`: where they are stored, for the capture.h5 beside it; or
+// empty. Where a frame cannot be read, the view says why.
+SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& analysis, const jam::Series& series, std::size_t room, int threads,
+                     const std::filesystem::path& file = {});
 // Of data whose snapshots are not at hand.
 SceneData no_scene(const std::string& why);
 

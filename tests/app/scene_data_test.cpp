@@ -12,6 +12,8 @@
 #include <random>
 
 #include "libjam/errors.hpp"
+#include "libjam/snapshot/writer.hpp"
+#include "tests/app/program.hpp"
 
 namespace jamscope {
 namespace {
@@ -310,6 +312,63 @@ TEST(SceneData, FindsTheFramesOfAPartialAnalysis) {
   EXPECT_EQ(data.view["why"], "");
   EXPECT_EQ(row_of(data, 1)["time"], 2e-3 * 3);
   EXPECT_EQ(row_of(data, 1)["jammed"], json({40}));
+}
+
+TEST(SceneData, TakesFramesOfTheCaptureForJamsThatFallBetweenFrames) {
+  Made made;
+  made.jammed = {{3, 40}};
+  jam::SnapshotSource source = made.source();
+  source.info.created_utc = "2026-01-01T00:00:00Z";
+  jam::Analysis a = analysis_of(source);
+  // Every step saw grain 40 in the frame at 6 ms, and grain 50 between those at 8 and 10 ms; of a third the capture has no frame.
+  a.every_step.resize(3);
+  const auto jam_of = [](jam::ParticleId particle, double start, double end, double peak_time, double force) {
+    jam::StepJam j;
+    j.start = start;
+    j.end = end;
+    j.peak_time = peak_time;
+    j.peak_force = force;
+    j.peak_particle = particle;
+    j.members = {particle};
+    return j;
+  };
+  a.every_step[1].jams = {jam_of(40, 5e-3, 7e-3, 6e-3, 33), jam_of(50, 8.5e-3, 9.5e-3, 9.2e-3, 33), jam_of(60, 10.4e-3, 10.6e-3, 10.5e-3, 40)};
+  const Scratch scratch;
+  const auto capture_of = [&](const jam::RunInfo& info) {
+    std::filesystem::remove(scratch / "capture.h5");
+    jam::SnapshotWriter writer = jam::SnapshotWriter::create(scratch / "capture.h5", info);
+    Made fine = made;
+    fine.jammed = {{0, 50}, {1, 50}, {2, 50}};
+    for (const std::size_t k : {0, 1, 2, 3}) {
+      jam::Snapshot s = fine.frame(k);
+      s.time = std::vector{8.6e-3, 9.1e-3, 9.4e-3, 9.9e-3}[k];
+      s.step = 100 + k;
+      writer.append(s);
+    }
+  };
+  capture_of(source.info);
+  const SceneData data = scene_data(source, a, {}, 10'000'000, 1, scratch / "run.h5");
+  std::vector<json> fine;
+  for (const json& row : data.view["frames"])
+    if (row["fine"].get<bool>()) fine.push_back(row);
+  ASSERT_EQ(fine.size(), 1u);
+  EXPECT_EQ(fine[0]["time"], 9.1e-3);  // the nearest to the peak
+  EXPECT_EQ(fine[0]["frame"], 4);      // it comes after that one
+  EXPECT_EQ(fine[0]["jammed"], json({50}));
+  EXPECT_EQ(fine[0]["bridges"], json({true}));
+  ASSERT_EQ(fine[0]["loaded"].size(), 2u);  // with its neighbour
+  EXPECT_EQ(fine[0]["loaded"][0][0], 50);
+  EXPECT_EQ(fine[0]["loaded"][0][1], 33.0);
+  double before = -1;
+  for (const json& row : data.view["frames"]) {
+    EXPECT_GT(row["time"], before);
+    before = row["time"];
+  }
+  // The capture of another run is none of ours.
+  jam::RunInfo other = source.info;
+  other.created_utc = "2026-01-02T00:00:00Z";
+  capture_of(other);
+  EXPECT_EQ(scene_data(source, a, {}, 10'000'000, 1, scratch / "run.h5").view["frames"].size(), 8u);
 }
 
 TEST(SceneData, SaysWhyThereIsNone) {

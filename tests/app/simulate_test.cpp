@@ -212,6 +212,11 @@ TEST_F(SimulateProgram, FollowsJamsFromStepToStepAndCapturesThem) {
   EXPECT_EQ(run_program("merge -q " + (folder_ / "part0:4") + " " + (folder_ / "part15:") + " -o " + (folder_ / "gap")).code, 3);
   EXPECT_EQ(run_program("analyze " + file + " --frames 5:5 -o " + (folder_ / "none")).code, 2);
 
+  // The page takes frames of capture.h5 too, and again when it is built from the files.
+  const std::string page = text_of(folder_ / "whole/report.html");
+  ASSERT_EQ(run_program("report -q " + (folder_ / "whole")).code, 0);
+  EXPECT_TRUE(text_of(folder_ / "whole/report.html") == page);
+
   const jam::SnapshotSource capture = jam::open_jamscope_file(folder_ / "whole/capture.h5");
   std::vector<double> time;
   for (std::size_t k = 0; k < capture.frames; ++k) time.push_back(capture.read(k).time);

@@ -86,7 +86,10 @@ export interface SceneFrame {
   frame: number; time: number; whole: boolean; part: boolean; grains: number; contacts: number; wall_contacts: number;
   mean_force: number; least_force: number; // N: mean of the pressing contacts; those above this one are here
   poses: number[][];                       // of each wall: x y z, quaternion w x y z
-  jammed: number[];                        // ids at the threshold of the analysis
+  fine: boolean;                           // between the frames of the analysis, after number `frame`
+  jammed: number[]; cluster: number[];     // ids by the criterion of the analysis, and the cluster of each
+  bridges: boolean[];                      // of each cluster
+  loaded?: [number, number][];             // of fine frames: ids and forces, N, above the floor of the samples
   section: number;
 }
 // The 3D view; `why` says why there is none. Layout of the sections: apps/jamscope/scene_data.hpp.

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import type { SceneData, SceneFrame } from '../src/data';
-import { clustersOf } from '../src/scene/clusters';
+import { clustersOf, clustersOfAnalysis } from '../src/scene/clusters';
 import { clusterColour, forceRange, rangeOf, shareOf, unknownColour, viridis } from '../src/scene/colours';
 import { decodeFrame, decodeGrains, frameFor, rowOf, type Frame } from '../src/scene/frame';
 import { momentOf } from '../src/scene/panel';
@@ -9,7 +9,7 @@ import { bands, packed, type Item } from '../src/sections/timeline';
 import { jammed } from './sample';
 
 const about = (more: Partial<SceneFrame>): SceneFrame => ({
-  frame: 0, time: 0, whole: true, part: false, grains: 0, contacts: 0, wall_contacts: 0, mean_force: 0, least_force: 0, poses: [], jammed: [], section: 0, ...more,
+  frame: 0, time: 0, whole: true, part: false, grains: 0, contacts: 0, wall_contacts: 0, mean_force: 0, least_force: 0, poses: [], fine: false, jammed: [], cluster: [], bridges: [], section: 0, ...more,
 });
 const bytesOf = (...parts: (Uint32Array | Uint16Array | Uint8Array | Float32Array)[]): ArrayBuffer => new Uint8Array(parts.flatMap((a) => [...new Uint8Array(a.buffer, a.byteOffset, a.byteLength)])).buffer;
 const code = (v: number): number => 1 + Math.round(((Math.log10(v) + 12) * 65533) / 18);
@@ -68,6 +68,13 @@ describe('clusters of jammed grains', () => {
     expect([...c.label]).toEqual([0, 0, 2, 1, 1]);
     expect(c.size).toEqual([2, 2, 1]);
     expect(c.bridges).toEqual([true, false, false]);
+  });
+  test('at its own threshold are those of the analysis', () => {
+    const own = { size: 3, id: Uint32Array.of(3, 8, 9), about: about({ jammed: [8, 9, 77], cluster: [0, 1, 0], bridges: [true, false] }) } as unknown as Frame;
+    const c = clustersOfAnalysis(own);
+    expect([...c.label]).toEqual([-1, 0, 1]);
+    expect(c.size).toEqual([2, 1]); // 77 is not among the grains of this part frame, but counts
+    expect(c.bridges).toEqual([true, false]);
   });
   test('leave out grains that are not jammed', () => {
     const c = clustersOf(frame, Uint8Array.of(1, 0, 1, 0, 0), 2, ['blade', 'vessel']);

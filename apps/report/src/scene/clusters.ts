@@ -1,5 +1,5 @@
 // Clusters of jammed grains in a frame, and which of them carry force from blade to vessel: the rule of libjam/jamming/jam_clusters.cpp.
-import type { Frame } from './frame';
+import { rowOf, type Frame } from './frame';
 
 export interface Clusters {
   label: Int32Array;  // [grains] number of the cluster, -1: not jammed
@@ -36,4 +36,17 @@ export function clustersOf(frame: Frame, jammed: Uint8Array, least: number, role
     if (roles[frame.wall[c]!] === 'vessel') vessel.add(k);
   }
   return { label, size: sorted.map((list) => list.length), bridges: sorted.map((_, k) => blade.has(k) && vessel.has(k)) };
+}
+
+// Those of the analysis itself.
+export function clustersOfAnalysis(frame: Frame): Clusters {
+  const { jammed, cluster, bridges } = frame.about;
+  const label = new Int32Array(frame.size).fill(-1);
+  const size = bridges.map(() => 0);
+  jammed.forEach((id, k) => {
+    size[cluster[k]!]! += 1;
+    const row = rowOf(frame, id);
+    if (row >= 0) label[row] = cluster[k]!;
+  });
+  return { label, size, bridges };
 }

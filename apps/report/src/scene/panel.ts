@@ -5,7 +5,7 @@ import { el } from '../dom';
 import { sectionsOfRun } from '../island/sections';
 import { count, instant, plural, significant, withUnit } from '../numbers/format';
 import { jammedIn, type Samples } from '../recount/samples';
-import { clustersOf, type Clusters } from './clusters';
+import { clustersOf, clustersOfAnalysis, type Clusters } from './clusters';
 import { forceRange, rangeOf, viridis, type Range } from './colours';
 import { decodeFrame, decodeGrains, frameFor, rowOf, type Frame, type Grains } from './frame';
 import { makeViewer, type Blade, type Chains, type ColourBy, type Look, type Viewer } from './viewer';
@@ -92,8 +92,10 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
   const fraction = (t: number): string => `${instant(t, decimalsOf)} s`;
 
   // At its own threshold the analysis says who is jammed, by whatever criterion; at another the page counts.
-  const jammedNow = (frame: SceneFrame): Set<number> =>
-    loaded && threshold !== data.criteria.jam_force ? jammedIn(loaded, frame.frame, threshold) : new Set(frame.jammed);
+  const jammedNow = (frame: SceneFrame): Set<number> => {
+    if (!loaded || threshold === data.criteria.jam_force) return new Set(frame.jammed);
+    return frame.fine ? new Set((frame.loaded ?? []).filter(([, force]) => force > threshold).map(([id]) => id)) : jammedIn(loaded, frame.frame, threshold);
+  };
 
   const frameAt = async (k: number): Promise<Frame> => {
     const known = cache.get(k);
@@ -127,7 +129,7 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     legend.replaceChildren(...[
       el('h3', {}, title),
       ...(look.by === 'cluster' ? [el('p', { class: 'caption' }, 'One colour for each cluster; grains that are not jammed are grey.')] : [bar, ends]),
-      key('ring', `jammed: above ${withUnit(threshold, 'N')}`),
+      key('ring', data.samples?.by_force === false ? 'jammed, by the criterion of the analysis' : `jammed: above ${withUnit(threshold, 'N')}`),
       key('ring chosen', 'chosen grain'),
       ...(look.chains === 'none' || !viewer || viewer.thickest() === 0 ? [] : [
         key('tube bridge', 'contact of a cluster that bridges blade and vessel'), key('tube', look.chains === 'strong' ? 'contact above 5 times the mean' : 'contact above the mean'),
@@ -177,7 +179,7 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     const jammed = current.jammed.reduce((a, b) => a + b, 0);
     slider.value = String(index);
     slider.setAttribute('aria-valuetext', fraction(about.time));
-    note.textContent = `${fraction(about.time)} · frame ${count(about.frame + 1)} of ${count(scene.all_frames)} · ${plural(jammed, 'grain')} jammed` +
+    note.textContent = `${fraction(about.time)} · ${about.fine ? `after frame ${count(about.frame + 1)}` : `frame ${count(about.frame + 1)}`} of ${count(scene.all_frames)} · ${plural(jammed, 'grain')} jammed` +
       (about.part ? ` · part: only grains within ${scene.part_reach} diameters of a jammed one` : '') + (message === '' ? '' : ` · ${message}`);
     stage.dataset.frame = String(about.frame);
     stage.dataset.selected = String(selected);
@@ -191,7 +193,9 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     if (mine !== asked) return;
     const ids = jammedNow(frame.about);
     const jammed = Uint8Array.from(frame.id, (id) => (ids.has(id) ? 1 : 0));
-    current = { frame, jammed, clusters: clustersOf(frame, jammed, (data.criteria.bridge_contact_share ?? 0.1) * threshold, roles) };
+    const clusters = threshold === data.criteria.jam_force ? clustersOfAnalysis(frame)
+      : clustersOf(frame, jammed, (data.criteria.bridge_contact_share ?? 0.1) * threshold, roles);
+    current = { frame, jammed, clusters };
     refresh();
   }
   function stop(): void {
@@ -225,7 +229,10 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     tick('Cut away', look.cut, (v) => { look.cut = v; refresh(); }),
     tick('Vessel', look.vessel, (v) => { look.vessel = v; refresh(); }),
     bladeChoice);
-  const whole = frames.length === scene.all_frames ? 'All frames of the record are here' : `${count(frames.length)} of ${count(scene.all_frames)} frames are here: those of jams, strongest first, then some spread evenly`;
+  const fine = frames.filter((f) => f.fine).length;
+  const whole = (frames.length - fine === scene.all_frames ? 'All frames of the record are here'
+    : `${count(frames.length - fine)} of ${count(scene.all_frames)} frames are here: those of jams, strongest first, then some spread evenly`) +
+    (fine > 0 ? `, and ${count(fine)} of capture.h5, of jams between them` : '');
   box.append(
     controls,
     el('div', { class: 'scene-body' }, stage, el('aside', {}, legend, record)),

@@ -1,9 +1,9 @@
 // Opens a report in a headless Chromium and checks what a reader would: see README.md.
 //
-//   npm run test:browser -- REPORT.html [--run RUN.h5 --program JAMSCOPE] [--pictures DIR]
+//   npm run test:browser -- REPORT.html [--run RUN.h5 --program JAMSCOPE] [--several PAGE.html] [--pictures DIR]
 //
 // REPORT.html: of one run with jams, with its summary.json beside it. With --run and --program (the snapshots the report was made from, and jamscope) the
-// threshold slider is compared with what `jamscope analyze --set jam_force=...` counts. Exit code 1 where something is wrong.
+// threshold slider is compared with what `jamscope analyze --set jam_force=...` counts. --several: a page of several runs. Exit code 1 where something is wrong.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -13,7 +13,7 @@ import { chromium } from 'playwright-core';
 
 const { values: options, positionals } = parseArgs({
   allowPositionals: true,
-  options: { run: { type: 'string' }, program: { type: 'string' }, pictures: { type: 'string' }, draws: { type: 'string', default: '10' }, chromium: { type: 'string', default: '/usr/bin/chromium' } },
+  options: { run: { type: 'string' }, program: { type: 'string' }, pictures: { type: 'string' }, several: { type: 'string' }, draws: { type: 'string', default: '10' }, chromium: { type: 'string', default: '/usr/bin/chromium' } },
 });
 const report = resolve(positionals[0] ?? '');
 if (positionals.length !== 1 || !existsSync(report)) {
@@ -31,14 +31,14 @@ const close = (a, b, relative = 1e-5) => Math.abs(a - b) <= relative * Math.max(
 
 const software = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 
-async function open(args, scheme = 'light') {
+async function open(args, file = report) {
   const browser = await chromium.launch({ executablePath: options.chromium, args });
-  const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, colorScheme: scheme });
+  const page = await browser.newPage({ viewport: { width: 1400, height: 900 }, colorScheme: 'light' });
   const trouble = [];
   page.on('console', (message) => { if (message.type() === 'error') trouble.push(message.text()); });
   page.on('pageerror', (error) => trouble.push(error.message));
   page.on('request', (request) => { if (!/^(file|data|blob):/.test(request.url())) trouble.push(`asked the network for ${request.url()}`); });
-  await page.goto(`file://${report}`);
+  await page.goto(`file://${file}`);
   await page.waitForFunction(() => document.documentElement.dataset.state !== 'loading', null, { timeout: 60_000 });
   return { browser, page, trouble };
 }
@@ -103,20 +103,25 @@ try {
     for (const [k, event] of data.events.slice(0, 3).entries()) {
       await page.locator('#events button.open').nth(k).click();
       await waitFor(event.peak_particle);
-      await page.waitForTimeout(600);
+      await page.waitForFunction(() => window.jamscope.scene().drawnJammed, null, { timeout: 30_000 }).catch(() => {});
       const s = await state();
       check(`clicking event ${event.number} in the table shows grain ${event.peak_particle} as jammed`, s.selected === event.peak_particle && s.drawnJammed && s.time >= event.start - 1e-9 && s.time <= event.end + 1e-9, `frame ${s.frame}, ${s.time} s, jammed ${s.jammed}`);
-      const ring = await ringPixels(page);
+      let ring = 0;
+      for (let k = 0; k < 50 && ring <= 20; ++k) { // until it is drawn
+        await page.waitForTimeout(200);
+        ring = await ringPixels(page);
+      }
       check('and the ring of a jammed grain is drawn there', ring > 20, `${ring} pixels`);
     }
     await picture(page, 'event');
     const bar = page.locator('.timeline rect.jam').last();
     await bar.scrollIntoViewIfNeeded();
     await page.evaluate(() => { document.querySelector('.timeline').scrollIntoView({ block: 'center' }); });
+    const was = (await state()).message;
     await bar.click({ force: true });
-    await page.waitForTimeout(800);
+    await page.waitForFunction((message) => window.jamscope.scene().message !== message, was, { timeout: 30_000 });
     const fromTimeline = await state();
-    check('clicking a bar of the timeline chooses a grain', fromTimeline.selected >= 0, `grain ${fromTimeline.selected}, frame ${fromTimeline.frame}, ${fromTimeline.message}`);
+    check('clicking a bar of the timeline chooses a grain', fromTimeline.selected >= 0 && fromTimeline.message !== '', `grain ${fromTimeline.selected}, frame ${fromTimeline.frame}, ${fromTimeline.message}`);
     await page.locator('.bar-tools button', { hasText: 'Whole record' }).click();
     const event = data.events[0];
     const spot = await page.evaluate(([start, end]) => {
@@ -130,7 +135,7 @@ try {
     }, [event.start, event.end]);
     await page.mouse.click(spot.x, spot.y);
     await waitFor(event.peak_particle);
-    await page.waitForTimeout(300);
+    await page.waitForFunction(() => window.jamscope.scene().drawnJammed, null, { timeout: 30_000 }).catch(() => {});
     check('clicking a shaded jam in a plot shows it', (await state()).drawnJammed);
 
     // A grain is picked where it is drawn, and keys work.
@@ -221,6 +226,32 @@ try {
     check('without an error', noise.length === 0, noise.join('; '));
   } finally {
     await bare.close();
+  }
+}
+// Several runs on one page.
+if (options.several) {
+  const { browser: many, page: all, trouble: noise } = await open(software, resolve(options.several));
+  try {
+    await sceneReady(all);
+    const names = await all.evaluate(() => window.jamscope.runs().map((run) => run.name));
+    check('a page of several runs has a column for each', (await all.locator('#comparison thead th').allTextContents()).slice(1).join() === names.join(), names.join());
+    const legend = await all.locator('#flow-energy .u-legend th').allTextContents();
+    check('and draws their curves over each other', names.every((name) => legend.some((text) => text.startsWith(`${name}:`))), legend.join(', '));
+    const frames = await all.evaluate(() => window.jamscope.runs().map((run) => run.events.map((e) => e.number).join()));
+    await all.locator('.choose select').first().selectOption({ index: names.length - 1 });
+    await sceneReady(all);
+    check('the chooser shows the lists of the last run', (await all.locator('#events tbody button.open').allTextContents()).join() === frames.at(-1));
+    if (frames.at(-1) !== '') {
+      await all.locator('#events button.open').first().click();
+      await all.waitForFunction(() => window.jamscope.scene().drawnJammed, null, { timeout: 30_000 });
+      check('and its jams in its own 3D view', true);
+    }
+    if (options.pictures) await all.screenshot({ path: join(options.pictures, 'several.png') });
+    check('without an error', noise.length === 0, noise.join('; '));
+  } catch (error) {
+    check('the page of several runs does what is asked of it', false, error.message);
+  } finally {
+    await many.close();
   }
 }
 console.log(failures === 0 ? 'all fine' : `${failures} failed`);
