@@ -260,6 +260,7 @@ void bind_info(py::module_& m) {
       .def_property_readonly("gravity", [](const py::object& self) { return view(self.cast<const Info&>().run->gravity, self); }, "[3] m/s^2")
       .def_property_readonly("dt", [](const Info& i) { return i.run->dt; }, "s, time step of the source; 0 where it is not known")
       .def_property_readonly("watch_force", [](const Info& i) { return i.run->watch_force; }, "N, excursions are stays of particles above it; 0 where there are none")
+      .def_property_readonly("watch_radius", [](const Info& i) { return i.run->watch_radius; }, "m, of a particle that is watched above watch_force, others above one that goes with the square of the radius; 0: watch_force is that of all")
       .def_property_readonly("watch_stride", [](const Info& i) { return i.run->watch_stride; }, "Steps between two looks at the particles.")
       .def_property_readonly("wall_loads_known", [](const Info& i) { return i.run->wall_loads_known; }, "Were force and torque of the walls recorded?")
       .def_property_readonly("materials", [](const Info& i) { return i.run->materials; }, "The materials; the column `material` of particles counts them.")
