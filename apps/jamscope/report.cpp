@@ -367,11 +367,13 @@ json headline_json(const jam::Analysis& analysis, const jam::Series& series) {
     if (std::isfinite(f) && !(f <= force)) force = f, at = frame.time;
   }
   // Every step was looked at for the series, so it can only know of more.
-  if (jam::present(series.largest_compressive_force, series.size()))
+  if (series.size() > 0 && jam::present(series.largest_compressive_force, series.size())) {
+    source = "series";  // also where the largest came at a frame, which has it with more digits
     for (std::size_t r = 0; r < series.size(); ++r) {
       const double f = series.largest_compressive_force[r];
-      if (std::isfinite(f) && !(f <= force)) force = f, at = series.time[r], source = "series";
+      if (std::isfinite(f) && !(f <= force)) force = f, at = series.time[r];
     }
+  }
   for (const auto& event : analysis.events) {
     bridged += event.bridged;
     censored += event.open_at_start || event.open_at_end;

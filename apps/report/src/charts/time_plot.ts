@@ -188,7 +188,7 @@ function options(spec: TimePlot, log: boolean, logAcross: boolean, width: number
       ...spec.curves.map((curve) => series(curve, spec)),
     ],
     bands: bands(spec.curves),
-    legend: { live: true, markers: { width: 2 } },
+    legend: { live: true, markers: { width: 2, dash: (_plot, k) => (spec.curves[k - 1]?.kind === 'dashes' ? 'dashed' : 'solid') } },
     cursor: {
       y: false,
       ...(across ? {} : { sync: { key: 'time', scales: ['x', null] as [string, null], setSeries: false, filters: { pub: (type: string) => type === 'mousemove' || type === 'mouseleave' } } }),

@@ -240,6 +240,7 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
       el('button', { type: 'button', 'aria-label': 'Frame before', click: () => step(-1) }, '‹'), slider,
       el('button', { type: 'button', 'aria-label': 'Next frame', click: () => step(1) }, '›'), note,
       el('button', { type: 'button', click: () => viewer?.reset() }, 'Reset view')),
+    ...(scene.walls ?? []).filter((w) => w.left_out).map((w) => el('p', { class: 'caption' }, `The wall ${w.name} is not drawn: ${w.left_out}.`)),
     el('p', { class: 'caption' }, `${whole}. Drag to turn, wheel to zoom, right button to move, click a grain for its record. With the view in focus: arrow keys turn, + and − zoom, ` +
       'comma and full stop change the frame, space plays, R resets.' +
       (roles.includes('vessel') ? ' The near side of the vessel is cut away; so is the near half of the bed, except for jammed grains.' : '')));

@@ -114,6 +114,20 @@ try {
       check('and the ring of a jammed grain is drawn there', ring > 20, `${ring} pixels`);
     }
     await picture(page, 'event');
+    // Jams of every step may fall between all frames; then the page says so and shows the nearest.
+    const jams = data.steps.particle?.jams ?? [];
+    if (jams.length > 0) await page.locator('#steps select').selectOption('particle');
+    const order = [...jams].sort((a, b) => a.peak_particle - b.peak_particle); // as the table is sorted at first
+    for (const [k, jam] of order.slice(0, 6).entries()) {
+      const near = `jam of every step, grain ${jam.peak_particle}`;
+      await page.locator('#steps button.open').nth(k).click();
+      await page.waitForFunction(([id, name]) => window.jamscope.scene().selected === id && window.jamscope.scene().message.startsWith(name), [jam.peak_particle, near], { timeout: 30_000 });
+      await page.waitForTimeout(300);
+      const s = await state();
+      const inside = data.scene.frames.some((f) => f.time >= jam.start - 1e-9 && f.time <= jam.end + 1e-9 && f.jammed.includes(jam.peak_particle));
+      check(`clicking a jam of every step shows grain ${jam.peak_particle} ${inside ? 'as jammed' : 'in the nearest frame, and says so'}`,
+        inside ? s.drawnJammed && s.time >= jam.start - 1e-9 && s.time <= jam.end + 1e-9 : /no frame of this page shows it/.test(s.message), `${s.time} s`);
+    }
     const bar = page.locator('.timeline rect.jam').last();
     await bar.scrollIntoViewIfNeeded();
     await page.evaluate(() => { document.querySelector('.timeline').scrollIntoView({ block: 'center' }); });
