@@ -474,7 +474,8 @@ json samples_json(const Record& record, const jam::Analysis& a, Sections& sectio
   std::string section = base64(deflated(bytes.all()));
   if (!sections.fits(section)) return nullptr;
   return {{"frames", time.size()}, {"samples", particle.size()}, {"floor", record.floor}, {"by_force", jam::criterion_of(a.criteria).name == "compressive_force"},
-          {"section", sections.add(std::move(section))}};
+          {"end_force", a.criteria.end_force ? json(*a.criteria.end_force) : json(nullptr)}, {"hold_off", a.criteria.hold_off},
+          {"shortest", a.criteria.shortest_jam}, {"section", sections.add(std::move(section))}};
 }
 
 json stays_json(const Record& record, const jam::RunInfo& info, const jam::Analysis& a, const jam::Series& series, Sections& sections) {

@@ -98,7 +98,9 @@ export interface SceneData {
   frames: SceneFrame[]; all_frames?: number; part_reach?: number;
 }
 // Every loaded grain of every frame, for counting at other thresholds.
-export interface SamplesData { frames: number; samples: number; floor: number; by_force: boolean; section: number }
+export interface SamplesData {
+  frames: number; samples: number; floor: number; by_force: boolean; end_force: number | null; hold_off: number; shortest: number; section: number;
+}
 // Every stay of a grain above the force that the run watched.
 export interface StaysData {
   rows: number; watch_force: number; dt: number; stride: number; first_step: number; hold_off: number; shortest: number;

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { Arrays, fromBase64, fromLogCode, unpack } from '../src/island/sections';
 import { recounted } from '../src/recount/recount';
-import { countFrames, decodeSamples, jammedIn, samplingInterval, type Samples } from '../src/recount/samples';
+import { countFrames, decodeSamples, jammedIn, plainRule, samplingInterval, type Rule, type Samples } from '../src/recount/samples';
 import { decodeStays, stepJams, stepStream } from '../src/recount/stays';
 import { kaplanMeier, whenLeft } from '../src/recount/survival';
 import { forceAt, positionOf } from '../src/sections/threshold';
@@ -49,6 +49,19 @@ describe('counting frames at a threshold', () => {
   test('a survival time on a bound belongs to the class above, whatever rounding did to it', () => {
     const times = [0, 0.1 + 0.2, 0.6, 0.9, 1.2];
     expect(countFrames(record([[], [[7, 30]], [], [], []], times), 20, [0.3], null).classes.map((c) => c.events)).toEqual([0, 1]);
+  });
+  test('goes on above the end force, over pauses and without short ones, as the analysis does', () => {
+    const frames: [number, number][][] = [[], [[7, 15]], [[7, 30]], [[7, 12]], [], [[7, 40]], [], [], [[9, 12]], [[9, 25]]];
+    const ends = (rule: Rule): number[][] => {
+      const c = countFrames(record(frames), 20, [], null, rule);
+      expect(c.tracks.map((t) => t.samples)).toEqual(c.events.map((e) => e.samples)); // one grain at a time
+      return c.events.map((e) => [e.first_frame, e.last_frame]);
+    };
+    expect(ends(plainRule)).toEqual([[2, 2], [5, 5], [9, 9]]);
+    expect(ends({ ...plainRule, endForce: 10 })).toEqual([[1, 3], [5, 5], [8, 9]]);
+    expect(ends({ ...plainRule, endForce: 10, holdOff: 0.002 })).toEqual([[1, 5], [8, 9]]);
+    expect(ends({ ...plainRule, endForce: 10, shortest: 0.004 })).toEqual([[1, 3], [8, 9]]);
+    expect(ends({ ...plainRule, endForce: 50 })).toEqual(ends(plainRule)); // never above the threshold
   });
   test('the sampling interval is the median distance', () => {
     expect(samplingInterval([0, 1, 2, 10])).toBe(1);
@@ -163,7 +176,7 @@ describe('sections', () => {
   test('samples come back with places and frames', () => {
     const parts = [Float64Array.of(0, 1), Uint32Array.of(0, 1), Uint32Array.of(9), Float64Array.of(33), Uint16Array.of(65535), Uint16Array.of(0), Uint16Array.of(32768), Uint16Array.of(65535), Uint8Array.of(1)];
     const bytes = new Uint8Array(parts.flatMap((a) => [...new Uint8Array(a.buffer)]));
-    const s = decodeSamples(bytes.buffer, { frames: 2, samples: 1, floor: 0.2, by_force: true, section: 0 }, [0, 0, 0], [2, 2, 2]);
+    const s = decodeSamples(bytes.buffer, { frames: 2, samples: 1, floor: 0.2, by_force: true, end_force: null, hold_off: 0, shortest: 0, section: 0 }, [0, 0, 0], [2, 2, 2]);
     expect([s.x[0], s.y[0], s.force[0], s.start[1], s.start[2], s.inGap[0]]).toEqual([2, 0, 33, 0, 1, 1]);
     expect(s.z[0]).toBeCloseTo(1, 3);
     expect(s.speed[0]).toBeNaN();

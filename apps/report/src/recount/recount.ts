@@ -1,6 +1,6 @@
 // A run at another threshold, as `jamscope analyze --set jam_force=...` would count it.
 import type { Column, ReportData } from '../data';
-import { countFrames, roundVessel, type Samples } from './samples';
+import { countFrames, plainRule, roundVessel, type Samples } from './samples';
 import { stepStreams, type Stays } from './stays';
 
 export interface Recountable {
@@ -19,7 +19,9 @@ function binned(values: readonly number[], every: number): Column {
 export function recounted(data: ReportData, known: Recountable, threshold: number): ReportData {
   if (!known.samples || threshold === data.criteria.jam_force) return data;
   const bounds = data.criteria.survival_classes.filter((b): b is number => b !== null);
-  const c = countFrames(known.samples, threshold, bounds, roundVessel(data));
+  const about = data.samples;
+  const rule = about ? { endForce: about.end_force, holdOff: about.hold_off, shortest: about.shortest } : plainRule;
+  const c = countFrames(known.samples, threshold, bounds, roundVessel(data), rule);
   const steps = known.stays && data.stays ? stepStreams(known.stays, data.stays, threshold) : {};
   const jammed = c.jammed.reduce((a, b) => a + b, 0);
   const { every } = data.frames;

@@ -54,9 +54,9 @@ function begin(frame: number): OpenStay {
   return { first: frame, last: frame, members: new Set(), peak: 0, peakFrame: frame, peakParticle: 0, inGap: false };
 }
 
-function extend(stay: OpenStay, samples: Samples, frame: number, s: number): void {
+function extend(stay: OpenStay, samples: Samples, frame: number, s: number, jams: boolean): void {
   stay.last = frame;
-  stay.members.add(samples.particle[s]!);
+  if (jams) stay.members.add(samples.particle[s]!);
   if (samples.force[s]! > stay.peak) {
     stay.peak = samples.force[s]!;
     stay.peakFrame = frame;
@@ -73,12 +73,25 @@ export interface FrameCounts {
   jammedTime: number;
 }
 
+// The rest of the rule: an event goes on while a force is above `endForce`, over pauses up to `holdOff`, and counts from `shortest` on.
+export interface Rule { endForce: number | null; holdOff: number; shortest: number }
+export const plainRule: Rule = { endForce: null, holdOff: 0, shortest: 0 };
+
 // `bounds`: upper ones of the survival classes, s; `axis`: a point and a direction of the vessel's axis, where it is round.
-export function countFrames(samples: Samples, threshold: number, bounds: readonly number[], vessel: { x: number; y: number } | null): FrameCounts {
+export function countFrames(
+  samples: Samples, threshold: number, bounds: readonly number[], vessel: { x: number; y: number } | null, rule: Rule = plainRule,
+): FrameCounts {
   const { time, start, force, particle } = samples;
+  const endForce = Math.min(rule.endForce ?? threshold, threshold);
   const frames = time.length;
   const interval = samplingInterval(time);
   const gapBefore = (k: number): boolean => time[k]! - time[k - 1]! > 1.5 * interval;
+  const goesOn = (last: number, k: number): boolean => {
+    if ((k - last - 1) * interval > rule.holdOff * (1 + 1e-9)) return false;
+    for (let next = last + 1; next <= k; ++next) if (gapBefore(next)) return false;
+    return true;
+  };
+  const counts = (stay: OpenStay): boolean => stay.members.size > 0 && (stay.last - stay.first + 1) * interval >= rule.shortest * (1 - 1e-9);
   const closed = (stay: OpenStay): Stay => {
     const openAtStart = stay.first === 0 || gapBefore(stay.first);
     const openAtEnd = stay.last + 1 === frames || gapBefore(stay.last + 1);
@@ -95,41 +108,37 @@ export function countFrames(samples: Samples, threshold: number, bounds: readonl
   const jammedInGap: number[] = [];
   const histogram: number[] = [0];
   let open: OpenStay | null = null;
-  let openTracks = new Map<number, { stay: OpenStay; rows: number[] }>();
+  const latest = new Map<number, { stay: OpenStay; rows: number[] }>(); // of each grain its last track
   for (let k = 0; k < frames; ++k) {
-    if (k > 0 && gapBefore(k)) {
-      open = null;
-      openTracks = new Map();
-    }
-    const still = new Map<number, { stay: OpenStay; rows: number[] }>();
     let count = 0;
     let inGap = 0;
     for (let s = start[k]!; s < start[k + 1]!; ++s) {
-      if (!(force[s]! > threshold)) continue;
-      ++count;
-      inGap += samples.inGap[s]!;
-      if (!open) {
+      if (!(force[s]! > endForce)) continue;
+      const jams = force[s]! > threshold;
+      if (jams) {
+        ++count;
+        inGap += samples.inGap[s]!;
+      }
+      if (!open || !goesOn(open.last, k)) {
         open = begin(k);
         globals.push(open);
       }
-      extend(open, samples, k, s);
-      let track = openTracks.get(particle[s]!);
-      if (!track) {
+      extend(open, samples, k, s, jams);
+      let track = latest.get(particle[s]!);
+      if (!track || !goesOn(track.stay.last, k)) {
         track = { stay: begin(k), rows: [] };
         tracks.push(track);
+        latest.set(particle[s]!, track);
       }
-      extend(track.stay, samples, k, s);
+      extend(track.stay, samples, k, s, jams);
       track.rows.push(s);
-      still.set(particle[s]!, track);
     }
-    if (count === 0) open = null;
-    openTracks = still;
     jammed.push(count);
     jammedInGap.push(inGap);
     while (histogram.length <= count) histogram.push(0);
     histogram[count]! += 1;
   }
-  const events = globals.map((stay, k): EventData => ({
+  const events = globals.filter(counts).map((stay, k): EventData => ({
     ...closed(stay), number: k + 1, first_frame: stay.first, last_frame: stay.last, peak_particle: stay.peakParticle, bridged: null,
     members: [...stay.members].sort((a, b) => a - b).slice(0, 20), member_count: stay.members.size,
   }));
@@ -148,7 +157,7 @@ export function countFrames(samples: Samples, threshold: number, bounds: readonl
   });
   return {
     interval, observed, events, classes, histogram, jammed, jammedInGap, jammedTime,
-    tracks: tracks.map(({ stay, rows }): TrackData => {
+    tracks: tracks.filter((track) => counts(track.stay)).map(({ stay, rows }): TrackData => {
       let path = 0;
       for (let r = 1; r < rows.length; ++r) {
         const [a, b] = [rows[r - 1]!, rows[r]!];
