@@ -254,7 +254,7 @@ Command add_follow(CLI::App& app, Options& o) {
       ->type_name("path|contacts");
   add_overrides(c, m.overrides, "--set analysis.jam_force=\"5 N\"");
   c.add_flag("-q,--quiet", m.quiet, "no progress");
-  c.footer("Examples:\n  jamscope follow run/run.h5 --jam 0 > path.csv\n  jamscope follow run/run.h5 --particles 17,204 --of contacts > contacts.csv");
+  c.footer("Examples:\n  jamscope follow run/run.h5 --jam 0 > path.csv\n  jamscope follow run/run.h5 --particles 17,204 --of contacts > touches.csv");
   return [&o] { return follow(o.follow); };
 }
 
