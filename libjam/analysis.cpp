@@ -121,6 +121,7 @@ std::string step_jams_csv(const Analysis& analysis) {
 Pipeline::Pipeline(const RunInfo& info, const Criteria& criteria) : info_(info) {
   check_criteria(criteria, info);
   analysis_.criteria = criteria;
+  analysis_.loaded.floor = LoadedGrains::floor_share * criteria.jam_force;
   const auto& wanted = criteria.metrics;
   if (wanted)
     for (const std::string& name : *wanted)
@@ -144,6 +145,8 @@ ExaminedFrame Pipeline::examine(const Snapshot& snapshot, std::size_t frame) con
   for (Cluster& cluster : found.clusters) cluster.frame = static_cast<std::uint32_t>(frame);
   found.blade = blade_of(snapshot, info_.walls);
   add_blade_load(found.summary, snapshot, info_);
+  found.loaded = loaded_grains(graph, network.compressive(), info_, analysis_.criteria);
+  found.extent = extent_of(snapshot.particles);
   found.jams = jam_frame(graph, network.compressive(), network.jammed(), network.clusters(), info_, found.blade, analysis_.criteria);
   for (const RecordedMetric& recorded : analysis_.metrics) found.metrics.push_back(find_metric(recorded.name)->value(network));
   found.power = info_.wall_loads_known ? power_from_wall_loads(snapshot, info_.walls) : power_from_wall_contacts(snapshot, info_.walls);
@@ -163,7 +166,9 @@ const FrameSummary& Pipeline::add(ExaminedFrame frame) {
   jam_frames_.push_back(std::move(frame.jams));
   analysis_.clusters.insert(analysis_.clusters.end(), frame.clusters.begin(), frame.clusters.end());
   frame_power_.push_back(frame.power);
-  blade_.push_back(frame.blade);
+  analysis_.blade.push_back(frame.blade);
+  analysis_.loaded.add(frame.loaded);
+  analysis_.loaded.extent.include(frame.extent);
   blade_moved_ = blade_moved_ || frame.blade_moves;
   recovered_contacts_ += frame.recovered_contacts;
   ages_pp_ = frame.ages_pp;
@@ -192,13 +197,14 @@ void Pipeline::follow_every_step(Analysis& a, const Series& series) const {
   const double begin = double(first_step) * info_.dt, end = series.time.back();
   for (const JamStream stream : {JamStream::global, JamStream::particle, JamStream::site}) {
     Analysis::StepStream& found = a.every_step.emplace_back();
-    found.jams = step_jams(stays, stream, detector, blade_, sites, info_.dt, info_.watch_stride, first_step);
+    found.jams = step_jams(stays, stream, detector, a.blade, sites, info_.dt, info_.watch_stride, first_step);
     found.statistics = jam_statistics(found.jams, begin, end);
   }
 }
 
 Analysis Pipeline::finish(const Series& series) const {
   Analysis a = analysis_;
+  a.loaded.keep(LoadedGrains::most);
   const auto note = [&a](const auto&... parts) { jam::note(a, parts...); };
 
   a.sampling_interval = sampling_interval(jam_frames_);
@@ -213,7 +219,7 @@ Analysis Pipeline::finish(const Series& series) const {
   const SampledDetector sampled{a.sampling_interval, a.criteria.hold_off, a.criteria.shortest_jam};
   a.events = global_events(jam_frames_, sampled);
   a.tracks = particle_tracks(jam_frames_, sampled);
-  a.lineage = lineage(a.clusters, cluster_sites(a.clusters, jam_frames_, blade_, {.z_low = info_.gap.z_low, .z_high = info_.gap.z_high}), jam_frames_,
+  a.lineage = lineage(a.clusters, cluster_sites(a.clusters, jam_frames_, a.blade, {.z_low = info_.gap.z_low, .z_high = info_.gap.z_high}), jam_frames_,
                       a.sampling_interval);
   a.cluster_events = cluster_events(a.clusters, a.lineage, jam_frames_, a.sampling_interval);
   a.jammed_time = jammed_time(a.events);

@@ -15,6 +15,7 @@
 #include "libjam/events/every_step.hpp"
 #include "libjam/events/jam_frame.hpp"
 #include "libjam/events/lineage.hpp"
+#include "libjam/events/loaded_grains.hpp"
 #include "libjam/jamming/cluster.hpp"
 #include "libjam/jamming/criteria.hpp"
 #include "libjam/snapshot/snapshot.hpp"
@@ -72,6 +73,8 @@ struct Analysis {
     JamStatistics statistics;
   };
   std::vector<StepStream> every_step;
+  LoadedGrains loaded;             // for counts at other thresholds
+  std::vector<BladePose> blade;    // [F] of the first wall that is a blade
   std::vector<ContactLife> contact_life;  // by octaves of life; empty where the source does not follow contacts from step to step
   std::vector<std::string> notes;  // what could not be computed from this data, and why
 };
@@ -90,6 +93,8 @@ struct ExaminedFrame {
   double power = 0;             // W of the blades, from wall loads where known, else from contacts; NaN where neither
   bool blade_moves = false, tangential_forces_missing = false;
   BladePose blade;  // of the first wall that is one
+  std::vector<LoadedGrain> loaded;
+  Extent extent;
   std::size_t recovered_contacts = 0;
   Series::EndedContacts ages_pp{}, ages_pw{};  // contacts by age
 };
@@ -121,7 +126,6 @@ class Pipeline {
   Analysis analysis_;
   std::vector<JamFrame> jam_frames_;
   std::vector<double> frame_power_;  // ExaminedFrame::power of each
-  std::vector<BladePose> blade_;     // ExaminedFrame::blade of each
   std::size_t events_so_far_ = 0;
   std::size_t recovered_contacts_ = 0;
   Series::EndedContacts ages_pp_{}, ages_pw_{};  // of the last frame

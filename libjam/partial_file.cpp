@@ -13,9 +13,8 @@ namespace jam {
 
 // What a frame has once, flat.
 struct PartialRow {
-  double power = 0, blade_time = 0;
-  Vec3 blade_position, blade_velocity, blade_angular_velocity;
-  std::array<double, 4> blade_orientation{};  // w, x, y, z
+  double power = 0;
+  Vec3 low, high;  // Extent
   bool blade_moves = false, tangential_forces_missing = false;
   std::uint64_t recovered_contacts = 0;
   Series::EndedContacts ages_pp{}, ages_pw{};
@@ -24,11 +23,8 @@ struct PartialRow {
 template <class Visit>
 void columns_of(PartialRow*, Visit&& column) {
   column("power", &PartialRow::power, "W", "that the blades put into the grains; NaN where it is not known");
-  column("blade_time", &PartialRow::blade_time, "s", "time of the blade's pose");
-  column("blade_position", &PartialRow::blade_position, "m", "of the blade's body frame");
-  column("blade_velocity", &PartialRow::blade_velocity, "m/s", "of the blade's body frame");
-  column("blade_angular_velocity", &PartialRow::blade_angular_velocity, "rad/s", "of the blade");
-  column("blade_orientation", &PartialRow::blade_orientation, "1", "w, x, y, z");
+  column("low", &PartialRow::low, "m", "where the particles are: from here");
+  column("high", &PartialRow::high, "m", "to here");
   column("blade_moves", &PartialRow::blade_moves, "1", "some blade does");
   column("tangential_forces_missing", &PartialRow::tangential_forces_missing, "1", "of contacts with walls");
   column("recovered_contacts", &PartialRow::recovered_contacts, "1", "contacts with walls that are not in the source");
@@ -40,16 +36,15 @@ namespace {
 
 constexpr const char* group_name = "/partial";
 
-PartialRow row_of(const ExaminedFrame& f) {
-  const Eigen::Quaterniond& q = f.blade.orientation;
-  return {f.power, f.blade.time, f.blade.position, f.blade.velocity, f.blade.angular_velocity, {q.w(), q.x(), q.y(), q.z()}, f.blade_moves,
+PartialRow partial_row_of(const ExaminedFrame& f) {
+  return {f.power, f.extent.low, f.extent.high, f.blade_moves,
           f.tangential_forces_missing, f.recovered_contacts, f.ages_pp, f.ages_pw};
 }
 
 void take(ExaminedFrame& f, const PartialRow& r) {
   f.power = r.power;
-  const auto& q = r.blade_orientation;
-  f.blade = {r.blade_time, r.blade_position, r.blade_velocity, r.blade_angular_velocity, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+  f.extent.low = r.low;
+  f.extent.high = r.high;
   f.blade_moves = r.blade_moves;
   f.tangential_forces_missing = r.tangential_forces_missing;
   f.recovered_contacts = r.recovered_contacts;
@@ -87,8 +82,14 @@ void write_partial(const std::filesystem::path& path, const PartialAnalysis& par
     const auto summary = [](const ExaminedFrame& f) -> const FrameSummary& { return f.summary; };
     write_table<FrameSummary>(file, "/partial/frames", part.frames, summary);
     std::vector<PartialRow> rows;
-    for (const ExaminedFrame& f : part.frames) rows.push_back(row_of(f));
+    for (const ExaminedFrame& f : part.frames) rows.push_back(partial_row_of(f));
     write_table(file, "/partial/rows", rows);
+    std::vector<BladeRow> blade;
+    for (const ExaminedFrame& f : part.frames) blade.push_back(row_of(f.blade));
+    write_table(file, "/partial/blade", blade);
+    write_table(file, "/partial/loaded",
+                write_parts(file, "/partial/rows", "loaded", "/partial/loaded", part.frames,
+                            [](const ExaminedFrame& f) -> const std::vector<LoadedGrain>& { return f.loaded; }));
     write_with_members(file, "/partial/clusters",
                        write_parts(file, "/partial/rows", "cluster", "/partial/clusters", part.frames,
                                    [](const ExaminedFrame& f) -> const std::vector<Cluster>& { return f.clusters; }));
@@ -124,6 +125,9 @@ PartialAnalysis read_partial(const std::filesystem::path& path) {
   const auto summaries = read_table<FrameSummary>(file, "/partial/frames");
   const auto rows = read_table<PartialRow>(file, "/partial/rows");
   expect_rows(file, "/partial/rows", rows.size(), summaries.size());
+  const auto blade = read_table<BladeRow>(file, "/partial/blade");
+  expect_rows(file, "/partial/blade", blade.size(), rows.size());
+  const auto loaded = read_parts(file, "/partial/rows", "loaded", read_table<LoadedGrain>(file, "/partial/loaded"), rows.size());
   const auto clusters = read_parts(file, "/partial/rows", "cluster", read_with_members<Cluster>(file, "/partial/clusters"), rows.size());
   const auto jammed = read_parts(file, "/partial/rows", "jammed", read_table<JammedSample>(file, "/partial/jammed"), rows.size());
   const auto nearly = read_parts(file, "/partial/rows", "nearly", read_table<JammedSample>(file, "/partial/nearly"), rows.size());
@@ -132,6 +136,8 @@ PartialAnalysis read_partial(const std::filesystem::path& path) {
     ExaminedFrame& f = part.frames[k];
     f.summary = summaries[k];
     take(f, rows[k]);
+    f.blade = pose_of(blade[k]);
+    f.loaded = loaded[k];
     f.clusters = clusters[k];
     f.jams = {summaries[k].time, jammed[k], nearly[k]};
   }

@@ -114,6 +114,22 @@ std::vector<Track> read_tracks(const h5::File& file) {
   return tracks;
 }
 
+LoadedGrains read_loaded(const h5::File& file) {
+  LoadedGrains loaded;
+  loaded.grains = read_table<LoadedGrain>(file, "/loaded");
+  loaded.count = file.read<std::uint32_t>("/loaded/of_frame/count");
+  std::uint64_t rows = 0;
+  for (const std::uint32_t count : loaded.count) rows += count;
+  if (rows != loaded.grains.size())
+    file.fail("/loaded/of_frame/count", "adds up to " + std::to_string(rows) + ", expected the " + std::to_string(loaded.grains.size()) + " rows of /loaded");
+  loaded.floor = read_one<double>(file, "/loaded/of_frame/floor");
+  const auto extent = file.read<Vec3>("/loaded/of_frame/extent");
+  if (extent.size() != 2) file.fail("/loaded/of_frame/extent", "has " + std::to_string(extent.size()) + " rows, expected 2");
+  loaded.extent.low = extent[0];
+  loaded.extent.high = extent[1];
+  return loaded;
+}
+
 // Those that this version knows, in its order.
 std::vector<RecordedMetric> read_metrics(const h5::File& file, std::size_t frames) {
   std::vector<RecordedMetric> recorded;
@@ -163,6 +179,8 @@ void expect_frames(const h5::File& file, const std::string& group, const JamEven
 // Rows of /frames that other tables name must be there.
 void check_frame_rows(const h5::File& file, const Analysis& analysis) {
   const std::size_t frames = analysis.frames.size();
+  for (const auto& [group, rows] : {std::pair{"/loaded/of_frame/count", analysis.loaded.count.size()}, {"/blade", analysis.blade.size()}})
+    if (rows != frames) file.fail(group, "has " + std::to_string(rows) + " rows, expected " + std::to_string(frames) + ", one for each frame");
   for (const Cluster& cluster : analysis.clusters) expect_frame(file, "/clusters", cluster.frame, frames);
   for (const JamEvent& event : analysis.cluster_events) expect_frames(file, "/cluster_events", event, frames);
   const std::size_t clusters = analysis.clusters.size();
@@ -202,6 +220,13 @@ void write_results(const std::filesystem::path& path, const Analysis& analysis, 
     write_with_members(file, "/cluster_events", analysis.cluster_events);
     write_with_members(file, "/events", analysis.events);
     write_tracks(file, analysis.tracks);
+    write_table(file, "/loaded", analysis.loaded.grains);
+    file.write("/loaded/of_frame/count", analysis.loaded.count, "1", "rows of /loaded, frame after frame");
+    file.write("/loaded/of_frame/floor", std::vector<double>{analysis.loaded.floor}, "N", "every particle above it is here");
+    file.write("/loaded/of_frame/extent", std::vector<Vec3>{analysis.loaded.extent.low, analysis.loaded.extent.high}, "m", "box around the particles of all frames");
+    std::vector<BladeRow> blade;
+    for (const BladePose& pose : analysis.blade) blade.push_back(row_of(pose));
+    write_table(file, "/blade", blade);
     write_table(file, "/survival_classes", analysis.survival_classes);
     file.write("/jammed_histogram/frames", analysis.jammed_histogram, "1", "row n: frames with n jammed particles");
     write_flow_energy(file, analysis.flow_energy);
@@ -236,6 +261,8 @@ Analysis read_results(const std::filesystem::path& path) {
   }
   analysis.events = read_with_members<JamEvent>(file, "/events");
   analysis.tracks = read_tracks(file);
+  analysis.loaded = read_loaded(file);
+  for (const BladeRow& row : read_table<BladeRow>(file, "/blade")) analysis.blade.push_back(pose_of(row));
   analysis.survival_classes = read_table<SurvivalClass>(file, "/survival_classes");
   analysis.jammed_histogram = file.read<std::uint32_t>("/jammed_histogram/frames");
   analysis.flow_energy = read_flow_energy(file);

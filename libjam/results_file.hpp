@@ -11,6 +11,8 @@
 //   /cluster_events    the cluster stream
 //   /events            the global stream; members as above
 //   /tracks            the per-particle stream; points are rows [point_start, + point_count) of /tracks/points/...
+//   /loaded            the particles under load in every frame, for counts at other thresholds; /loaded/of_frame: how many of each frame
+//   /blade             where the blade was in each frame
 //   /every_step/...    global, particle, site: jams as every step of the run saw them, where it watched
 //   /contact_life      how long contacts lasted, by octaves, where the run counted
 //   /survival_classes /jammed_histogram /flow_energy /notes

@@ -89,6 +89,38 @@ void columns_of(ClusterLink*, Visit&& column) {
 }
 
 template <class Visit>
+void columns_of(LoadedGrain*, Visit&& column) {
+  column("particle", &LoadedGrain::particle, "1", "id");
+  column("force", &LoadedGrain::force, "N", "compressive");
+  column("position", &LoadedGrain::position, "m", "centre");
+  column("speed", &LoadedGrain::speed, "m/s", "of the centre; NaN where the source has no velocities");
+  column("in_gap", &LoadedGrain::in_gap, "1", "in the gap between blade tip and vessel");
+}
+
+// A pose, flat.
+struct BladeRow {
+  double time = 0;
+  Vec3 position, velocity, angular_velocity;
+  std::array<double, 4> orientation{};  // w, x, y, z
+};
+inline BladeRow row_of(const BladePose& p) {
+  const Eigen::Quaterniond& q = p.orientation;
+  return {p.time, p.position, p.velocity, p.angular_velocity, {q.w(), q.x(), q.y(), q.z()}};
+}
+inline BladePose pose_of(const BladeRow& r) {
+  const auto& q = r.orientation;
+  return {r.time, r.position, r.velocity, r.angular_velocity, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+}
+template <class Visit>
+void columns_of(BladeRow*, Visit&& column) {
+  column("time", &BladeRow::time, "s", "of the pose");
+  column("position", &BladeRow::position, "m", "of the blade's body frame");
+  column("velocity", &BladeRow::velocity, "m/s", "of the blade's body frame");
+  column("angular_velocity", &BladeRow::angular_velocity, "rad/s", "of the blade");
+  column("orientation", &BladeRow::orientation, "1", "w, x, y, z");
+}
+
+template <class Visit>
 void columns_of(Track::Point*, Visit&& column) {
   column("frame", &Track::Point::frame, "1", "row of /frames");
   columns_of(static_cast<JammedSample*>(nullptr), [&]<class T>(const char* name, T JammedSample::*member, const char* unit, const char* doc) {

@@ -147,7 +147,7 @@ int analyze(const AnalyzeOptions& options) {
   facts.warnings = source.warnings;
   facts.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   write_outputs(options.output, source.info, analysis, part.series, facts, &source,
-                options.input.paths.size() == 1 ? options.input.paths.front() : std::string(), options.threads);
+                options.input.paths.size() == 1 ? options.input.paths.front() : std::string());
   if (!options.quiet) fmt::print("{}{}results in {}\n", result_text(analysis), energy_text(source.info, part.series), options.output);
   return 0;
 }
@@ -168,7 +168,7 @@ int merge(const MergeOptions& options) {
     return 0;
   }
   const jam::Analysis analysis = jam::finish(whole);
-  write_outputs(options.output, whole.run, analysis, whole.series, facts_of(whole.run, options.command_line, names), nullptr, "", 1);
+  write_outputs(options.output, whole.run, analysis, whole.series, facts_of(whole.run, options.command_line, names), nullptr, "");
   if (!options.quiet) fmt::print("{}{}results in {}\n", result_text(analysis), energy_text(whole.run, whole.series), options.output);
   return 0;
 }

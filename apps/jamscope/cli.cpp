@@ -289,8 +289,6 @@ Command add_report(CLI::App& app, Options& o) {
   c.add_option("DIR", r.folders, "folders of results; the curves of several are drawn over each other")->required()->type_name("");
   c.add_option("-o,--output", r.output, "the page; default: report.html in DIR, of several in the current folder")->type_name("FILE");
   c.add_flag("--figures", r.figures, "write every figure as DIR/figures/NAME.svg and its numbers as NAME.csv");
-  r.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  add_threads(c, r.threads, "number of threads; the results do not depend on it");
   c.add_flag("-q,--quiet", r.quiet, "no output");
   c.footer("Examples:\n  jamscope report out --figures\n  jamscope report down up -o both.html");
   return [&o] { return report(o.report); };

@@ -452,13 +452,13 @@ ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts, co
 
 void write_outputs(const std::string& folder, const jam::RunInfo& info, const jam::Analysis& analysis,
                    const jam::Series& series, const RunFacts& facts, const jam::SnapshotSource* snapshots,
-                   const std::string& snapshot_file, int threads) {
+                   const std::string& snapshot_file) {
   const auto in_folder = [&](const char* name) { return (fs::path(folder) / name).string(); };
   write_text_file(in_folder("events.csv"), jam::events_csv(analysis));
   if (const std::string jams = jam::step_jams_csv(analysis); !jams.empty()) write_text_file(in_folder("jams.csv"), jams);
   write_text_file(in_folder("summary.json"), summary_json(info, analysis, series, facts));
   jam::write_results(in_folder("jam.h5"), analysis, info);
-  const SceneData scene = snapshots != nullptr ? scene_data(*snapshots, analysis, series, room_for_scenes, threads, snapshot_file)
+  const SceneData scene = snapshots != nullptr ? scene_data(*snapshots, analysis, series, room_for_scenes, snapshot_file)
                                                : no_scene("The snapshots of this analysis were not at hand when the page was written.");
   const ReportContext context = report_context(info, facts, analysis.criteria);
   write_text_file(in_folder("report.html"), report_html({{info, analysis, series, context, scene}}));

@@ -53,6 +53,6 @@ ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts, co
 // they are not at hand. `snapshot_file`: where they are stored; empty: in no single file.
 void write_outputs(const std::string& folder, const jam::RunInfo& info, const jam::Analysis& analysis,
                    const jam::Series& series, const RunFacts& facts, const jam::SnapshotSource* snapshots,
-                   const std::string& snapshot_file, int threads);
+                   const std::string& snapshot_file);
 
 }  // namespace jamscope

@@ -68,7 +68,7 @@ struct StoredResults {
   SceneData scene;
 };
 
-StoredResults read_folder(const std::string& name, std::size_t room, int threads) {
+StoredResults read_folder(const std::string& name, std::size_t room) {
   const fs::path folder(name);
   if (!fs::is_directory(folder)) throw UsageError(name + ": expected a folder of results");
   StoredResults r;
@@ -82,7 +82,7 @@ StoredResults read_folder(const std::string& name, std::size_t room, int threads
     // jam.h5 holds the jams of every step, not what they say in all.
     const double begin = r.analysis.frames.empty() ? 0.0 : double(r.analysis.frames.front().step) * r.info.dt;
     for (auto& stream : r.analysis.every_step) stream.statistics = jam::jam_statistics(stream.jams, begin, r.series.time.empty() ? begin : r.series.time.back());
-    r.scene = scene_data(*source, r.analysis, r.series, room, threads, found->file);
+    r.scene = scene_data(*source, r.analysis, r.series, room, found->file);
   } else {
     r.scene = no_scene("The snapshots of these results were found neither beside them nor where the analysis read them.");
     const auto& frames = r.analysis.frames;
@@ -99,7 +99,7 @@ StoredResults read_folder(const std::string& name, std::size_t room, int threads
 int report(const ReportOptions& options) {
   const std::size_t n = options.folders.size();
   std::vector<StoredResults> results;
-  for (const std::string& folder : options.folders) results.push_back(read_folder(folder, room_for_scenes / n, options.threads));
+  for (const std::string& folder : options.folders) results.push_back(read_folder(folder, room_for_scenes / n));
   if (n > 1)
     // Runs of one case have one name; folders tell them apart.
     for (std::size_t k = 0; k < n; ++k) results[k].context.name = fs::path(options.folders[k]).lexically_normal().string();

@@ -9,7 +9,6 @@ struct ReportOptions {
   std::vector<std::string> folders;  // of results
   std::string output;                // file; empty: report.html in the folder, of several folders in the current one
   bool figures = false;              // write FOLDER/figures/*.svg and *.csv too
-  int threads = 1;
   bool quiet = false;
 };
 

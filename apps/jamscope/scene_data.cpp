@@ -13,13 +13,11 @@
 #include <optional>
 #include <set>
 
-#include "apps/jamscope/frames_in_flight.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/events/every_step.hpp"
 #include "libjam/graph/contact_force.hpp"
 #include "libjam/graph/contact_graph.hpp"
 #include "libjam/jamming/compressive_force.hpp"
-#include "libjam/jamming/gap.hpp"
 #include "libjam/jamming/jam_clusters.hpp"
 #include "libjam/jamming/jam_criteria.hpp"
 #include "libjam/snapshot/reader.hpp"
@@ -34,11 +32,9 @@ using nlohmann::json;
 constexpr double part_reach = 4;               // mean diameters around a jammed grain
 constexpr std::size_t most_frames = 500;       // of the view
 constexpr std::size_t most_fine_frames = 200;  // of those, from capture.h5
-constexpr std::size_t most_samples = 200'000;  // loaded grains of all frames; then the floor rises
 constexpr std::size_t most_stays = 100'000;
 constexpr std::size_t most_triangles = 100'000;
 constexpr std::size_t most_contacts = 40'000;  // of a frame, the strongest
-constexpr double floor_share = 0.01;           // of the jam force
 
 class Bytes {
  public:
@@ -84,75 +80,25 @@ json number(double value) { return std::isfinite(value) ? json(value) : json(nul
 json point(const jam::Vec3& v) { return {number(v.x()), number(v.y()), number(v.z())}; }
 
 struct Box {
-  jam::Vec3 low = jam::Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  void include(const jam::Vec3& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  jam::Vec3 low, high;
   std::uint16_t code(double v, int axis) const {
     const double length = high[axis] - low[axis];
     return std::uint16_t(std::lround(length > 0 ? std::clamp((v - low[axis]) / length, 0.0, 1.0) * 65535 : 0));
   }
 };
 
-// The loaded grains of one frame.
-struct Sample {
-  jam::ParticleId particle;
-  double force;  // N
-  jam::Vec3f position;
-  float speed;  // m/s, NaN where not known
-  bool in_gap;
-};
-struct Frame {
-  double time = 0;
-  jam::BladePose blade;
-  Box box;
-  double largest_radius = 0;
-  std::vector<Sample> loaded;
-  std::vector<jam::ParticleId> id;  // of all its grains
-  std::vector<float> radius;
-};
-
-Frame examined(const jam::Snapshot& s, const jam::RunInfo& info, const jam::Criteria& criteria, double floor) {
-  Frame frame;
-  frame.time = s.time;
-  for (std::size_t w = 0; w < info.walls.size(); ++w)
-    if (info.walls[w].role == jam::WallRole::blade) {
-      const jam::WallState& state = s.walls[w];
-      frame.blade = {s.time, state.position, state.velocity, state.angular_velocity, state.orientation};
-      break;
-    }
-  const jam::Particles& p = s.particles;
-  frame.id = p.id;
-  frame.radius = p.radius;
-  for (std::size_t v = 0; v < p.size(); ++v) {
-    frame.box.include(p.position[v].cast<double>());
-    frame.largest_radius = std::max(frame.largest_radius, double{p.radius[v]});
-  }
-  const jam::ContactGraph graph(s, info.walls);
-  const std::vector<double> force = jam::compressive_forces(graph, criteria.measure);
-  const bool has_velocity = jam::present(p.velocity, p.size());
-  for (std::uint32_t v = 0; v < p.size(); ++v)
-    if (force[v] > floor)
-      frame.loaded.push_back({p.id[v], force[v], p.position[v], has_velocity ? p.velocity[v].norm() : std::numeric_limits<float>::quiet_NaN(),
-                              jam::in_gap(s, v, info, criteria)});
-  return frame;
-}
-
-// The record as the slider needs it.
+// What all frames share.
 struct Record {
-  std::vector<Frame> frames;
-  double floor = 0;  // N; every grain above it is in `frames`
   Box box;
-  std::vector<jam::ParticleId> id;  // of all grains of all frames, ascending; in most records they are the same in every frame
+  std::vector<jam::ParticleId> id;  // of all grains of all frames, ascending
   std::vector<float> radius;
 
-  void know(const std::vector<jam::ParticleId>& ids, const std::vector<float>& radii) {
-    if (ids == id) return;
+  void know(const jam::Particles& grains) {
+    if (grains.id == id) return;
     std::vector<std::pair<jam::ParticleId, float>> both;
     for (std::size_t k = 0; k < id.size(); ++k) both.emplace_back(id[k], radius[k]);
-    for (std::size_t k = 0; k < ids.size(); ++k)
-      if (!std::binary_search(id.begin(), id.end(), ids[k])) both.emplace_back(ids[k], radii[k]);
+    for (std::size_t k = 0; k < grains.size(); ++k)
+      if (!std::binary_search(id.begin(), id.end(), grains.id[k])) both.emplace_back(grains.id[k], grains.radius[k]);
     std::sort(both.begin(), both.end());
     id.clear();
     radius.clear();
@@ -163,39 +109,16 @@ struct Record {
   }
 };
 
-// Keeps the samples few: the floor rises until they are.
-void raise_floor(Record& record, std::size_t most) {
-  std::vector<double> forces;
-  for (const Frame& f : record.frames)
-    for (const Sample& s : f.loaded) forces.push_back(s.force);
-  if (forces.size() <= most) return;
-  std::nth_element(forces.begin(), forces.end() - std::ptrdiff_t(most), forces.end());
-  record.floor = *(forces.end() - std::ptrdiff_t(most));
-  for (Frame& f : record.frames) std::erase_if(f.loaded, [&](const Sample& s) { return !(s.force > record.floor); });
-}
+// A frame has a grain that the record does not.
+struct UnknownGrain {};
 
-Record record_of(const jam::SnapshotSource& source, std::size_t first, const jam::Analysis& a, int threads) {
-  Record record;
-  record.floor = floor_share * a.criteria.jam_force;
-  std::size_t samples = 0;
-  const auto work = [&](std::size_t, const jam::Snapshot*, const jam::Snapshot& s) { return examined(s, source.info, a.criteria, floor_share * a.criteria.jam_force); };
-  for_frames_in_flight(source, first, first + a.frames.size(), threads, false, work, [&](Frame frame) {
-    std::erase_if(frame.loaded, [&](const Sample& s) { return !(s.force > record.floor); });
-    samples += frame.loaded.size();
-    if (frame.box.low.x() <= frame.box.high.x()) {
-      record.box.include(frame.box.low - jam::Vec3::Constant(frame.largest_radius));
-      record.box.include(frame.box.high + jam::Vec3::Constant(frame.largest_radius));
-    }
-    record.know(frame.id, frame.radius);
-    frame.id = {};
-    frame.radius = {};
-    record.frames.push_back(std::move(frame));
-    if (samples > 4 * most_samples) {
-      raise_floor(record, 2 * most_samples);
-      samples = 2 * most_samples;
-    }
-  });
-  raise_floor(record, most_samples);
+// In nearly every record all frames have the same grains: then the first and the last have them, and all have as many. `look_at_all`: reads every frame.
+Record record_of(const jam::SnapshotSource& source, std::size_t first, const jam::Analysis& a, bool look_at_all) {
+  Record record{{a.loaded.extent.low, a.loaded.extent.high}, {}, {}};
+  record.know(source.read(first).particles);
+  record.know(source.read(first + a.frames.size() - 1).particles);
+  const bool as_many = std::all_of(a.frames.begin(), a.frames.end(), [&](const jam::FrameSummary& f) { return f.particles == record.id.size(); });
+  for (std::size_t k = 1; (look_at_all || !as_many) && k + 1 < a.frames.size(); ++k) record.know(source.read(first + k).particles);
   return record;
 }
 
@@ -274,6 +197,7 @@ struct Shown {
 Shown encoded(const jam::Snapshot& s, const jam::RunInfo& info, const jam::Analysis& a, std::size_t frame, const Record& record, bool part, bool fine) {
   const std::vector<jam::ParticleId>& ids = record.id;
   const jam::Particles& p = s.particles;
+  if (!std::includes(ids.begin(), ids.end(), p.id.begin(), p.id.end())) throw UnknownGrain{};
   const jam::ContactGraph graph(s, info.walls);
   const std::vector<double> force = jam::compressive_forces(graph, a.criteria.measure);
   const std::vector<double> limit = jam::jam_limits(graph, info, a.criteria);
@@ -383,7 +307,7 @@ Shown encoded(const jam::Snapshot& s, const jam::RunInfo& info, const jam::Analy
   if (fine) {
     shown.row["loaded"] = json::array();
     for (std::size_t v = 0; v < p.size(); ++v)
-      if (force[v] > record.floor) shown.row["loaded"].push_back({p.id[v], force[v]});
+      if (force[v] > a.loaded.floor) shown.row["loaded"].push_back({p.id[v], force[v]});
   }
   shown.section = base64(deflated(bytes.all()));
   return shown;
@@ -448,24 +372,21 @@ json walls_json(const jam::RunInfo& info, Sections& sections) {
 
 json samples_json(const Record& record, const jam::Analysis& a, Sections& sections) {
   std::vector<double> time, force;
-  std::vector<std::uint32_t> count, particle;
+  std::vector<std::uint32_t> particle;
   std::array<std::vector<std::uint16_t>, 3> at;
   std::vector<std::uint16_t> speed;
   std::vector<std::uint8_t> in_gap;
-  for (const Frame& f : record.frames) {
-    time.push_back(f.time);
-    count.push_back(std::uint32_t(f.loaded.size()));
-    for (const Sample& s : f.loaded) {
-      particle.push_back(s.particle);
-      force.push_back(s.force);
-      for (int axis = 0; axis < 3; ++axis) at[std::size_t(axis)].push_back(record.box.code(double{s.position[axis]}, axis));
-      speed.push_back(log_code(double{s.speed}));
-      in_gap.push_back(s.in_gap);
-    }
+  for (const jam::FrameSummary& f : a.frames) time.push_back(f.time);
+  for (const jam::LoadedGrain& g : a.loaded.grains) {
+    particle.push_back(g.particle);
+    force.push_back(g.force);
+    for (int axis = 0; axis < 3; ++axis) at[std::size_t(axis)].push_back(record.box.code(double{g.position[axis]}, axis));
+    speed.push_back(log_code(double{g.speed}));
+    in_gap.push_back(g.in_gap);
   }
   Bytes bytes;
   bytes.add(time);
-  bytes.add(count);
+  bytes.add(a.loaded.count);
   bytes.add(particle);
   bytes.add(force);
   for (const auto& axis : at) bytes.add(axis);
@@ -473,17 +394,15 @@ json samples_json(const Record& record, const jam::Analysis& a, Sections& sectio
   bytes.add(in_gap);
   std::string section = base64(deflated(bytes.all()));
   if (!sections.fits(section)) return nullptr;
-  return {{"frames", time.size()}, {"samples", particle.size()}, {"floor", record.floor}, {"by_force", jam::criterion_of(a.criteria).name == "compressive_force"},
+  return {{"frames", time.size()}, {"samples", particle.size()}, {"floor", a.loaded.floor}, {"by_force", jam::criterion_of(a.criteria).name == "compressive_force"},
           {"end_force", a.criteria.end_force ? json(*a.criteria.end_force) : json(nullptr)}, {"hold_off", a.criteria.hold_off},
           {"shortest", a.criteria.shortest_jam}, {"section", sections.add(std::move(section))}};
 }
 
-json stays_json(const Record& record, const jam::RunInfo& info, const jam::Analysis& a, const jam::Series& series, Sections& sections) {
+json stays_json(const jam::RunInfo& info, const jam::Analysis& a, const jam::Series& series, Sections& sections) {
   if (a.every_step.empty()) return nullptr;
   const jam::Excursions stays = jam::last_word(series.excursions);
   if (stays.size() > most_stays) return nullptr;
-  std::vector<jam::BladePose> poses;
-  for (const Frame& f : record.frames) poses.push_back(f.blade);
   const jam::Sites sites{.z_low = info.gap.z_low, .z_high = info.gap.z_high};
   std::vector<double> first, last, peak;
   std::vector<std::uint8_t> site;
@@ -491,7 +410,7 @@ json stays_json(const Record& record, const jam::RunInfo& info, const jam::Analy
     first.push_back(double(stays.first_step[k]));
     last.push_back(double(stays.last_step[k]));
     peak.push_back(double(stays.peak_step[k]));
-    site.push_back(std::uint8_t(sites.of(jam::in_blade_frame(poses, double(stays.peak_step[k]) * info.dt, stays.peak_position[k].cast<double>()))));
+    site.push_back(std::uint8_t(sites.of(jam::in_blade_frame(a.blade, double(stays.peak_step[k]) * info.dt, stays.peak_position[k].cast<double>()))));
   }
   Bytes bytes;
   bytes.add(stays.particle);
@@ -524,6 +443,48 @@ std::optional<std::size_t> first_frame(const jam::SnapshotSource& source, const 
   return source.read(low).time == a.frames.front().time ? std::optional<std::size_t>(low) : std::nullopt;
 }
 
+SceneData scene_of(const jam::SnapshotSource& source, std::size_t first, const Record& record, const jam::Analysis& a, const jam::Series& series, std::size_t room,
+                   const std::filesystem::path& file) {
+  SceneData data;
+  Sections sections(data, room);
+  data.samples = samples_json(record, a, sections);
+  data.stays = stays_json(source.info, a, series, sections);
+
+  const FineFrames fine = fine_frames(file, source.info);
+  const Wanted wanted = wanted_frames(a, fine.time);
+  Bytes grains;
+  grains.add(record.id);
+  grains.add(record.radius);
+  const std::size_t grains_section = sections.add(base64(deflated(grains.all())));
+  const json walls = walls_json(source.info, sections);
+
+  std::vector<json> rows;
+  const auto add = [&](Shown shown, double share) {
+    if (rows.size() >= most_frames || !sections.fits(shown.section, share)) return false;
+    shown.row["section"] = sections.add(std::move(shown.section));
+    rows.push_back(std::move(shown.row));
+    return true;
+  };
+  bool whole = true;
+  // Whole while there is room for it, then part; false where not even that fits.
+  const auto add_jam = [&](const jam::Snapshot& s, std::size_t frame, bool is_fine) {
+    whole = whole && add(encoded(s, source.info, a, frame, record, false, is_fine), 0.5);
+    return whole || add(encoded(s, source.info, a, frame, record, true, is_fine), 0.75);
+  };
+  for (const std::size_t frame : wanted.of_jams)
+    if (!add_jam(source.read(first + frame), frame, false)) break;
+  for (const std::size_t k : wanted.fine) {
+    const auto after = std::upper_bound(a.frames.begin(), a.frames.end(), fine.time[k], [](double t, const jam::FrameSummary& f) { return t < f.time; });
+    if (!add_jam(jam::read_frame(*fine.index, k), std::size_t(std::max<std::ptrdiff_t>(after - a.frames.begin() - 1, 0)), true)) break;
+  }
+  for (const std::size_t frame : wanted.spread)
+    if (!add(encoded(source.read(first + frame), source.info, a, frame, record, false, false), 1)) break;
+  std::sort(rows.begin(), rows.end(), [](const json& x, const json& y) { return x["time"].get<double>() < y["time"].get<double>(); });
+  data.view = {{"why", ""}, {"low", point(record.box.low)}, {"high", point(record.box.high)}, {"grains", record.id.size()}, {"grains_section", grains_section},
+               {"walls", walls}, {"frames", rows}, {"all_frames", a.frames.size()}, {"part_reach", part_reach}};
+  return data;
+}
+
 }  // namespace
 
 std::uint16_t log_code(double value) {
@@ -543,52 +504,17 @@ SceneData no_scene(const std::string& why) {
   return data;
 }
 
-SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& a, const jam::Series& series, std::size_t room, int threads,
-                     const std::filesystem::path& file) {
+SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& a, const jam::Series& series, std::size_t room, const std::filesystem::path& file) {
   if (a.frames.empty()) return no_scene("The record holds no frames.");
   try {
     const std::optional<std::size_t> first = first_frame(source, a);
     if (!first) return no_scene("The snapshots that were found are not those of this analysis.");
-    const Record record = record_of(source, *first, a, threads);
-    if (!(record.box.low.x() < record.box.high.x())) return no_scene("The frames hold no grains.");
-    SceneData data;
-    Sections sections(data, room);
-    data.samples = samples_json(record, a, sections);
-    data.stays = stays_json(record, source.info, a, series, sections);
-
-    const FineFrames fine = fine_frames(file, source.info);
-    const Wanted wanted = wanted_frames(a, fine.time);
-    Bytes grains;
-    grains.add(record.id);
-    grains.add(record.radius);
-    const std::size_t grains_section = sections.add(base64(deflated(grains.all())));
-    const json walls = walls_json(source.info, sections);
-
-    std::vector<json> rows;
-    const auto add = [&](Shown shown, double share) {
-      if (rows.size() >= most_frames || !sections.fits(shown.section, share)) return false;
-      shown.row["section"] = sections.add(std::move(shown.section));
-      rows.push_back(std::move(shown.row));
-      return true;
-    };
-    bool whole = true;
-    // Whole while there is room for it, then part; false where not even that fits.
-    const auto add_jam = [&](const jam::Snapshot& s, std::size_t frame, bool is_fine) {
-      whole = whole && add(encoded(s, source.info, a, frame, record, false, is_fine), 0.5);
-      return whole || add(encoded(s, source.info, a, frame, record, true, is_fine), 0.75);
-    };
-    for (const std::size_t frame : wanted.of_jams)
-      if (!add_jam(source.read(*first + frame), frame, false)) break;
-    for (const std::size_t k : wanted.fine) {
-      const auto after = std::upper_bound(a.frames.begin(), a.frames.end(), fine.time[k], [](double t, const jam::FrameSummary& f) { return t < f.time; });
-      if (!add_jam(jam::read_frame(*fine.index, k), std::size_t(std::max<std::ptrdiff_t>(after - a.frames.begin() - 1, 0)), true)) break;
+    if (!(a.loaded.extent.low.x() < a.loaded.extent.high.x())) return no_scene("The frames hold no grains.");
+    try {
+      return scene_of(source, *first, record_of(source, *first, a, false), a, series, room, file);
+    } catch (const UnknownGrain&) {
+      return scene_of(source, *first, record_of(source, *first, a, true), a, series, room, file);
     }
-    for (const std::size_t frame : wanted.spread)
-      if (!add(encoded(source.read(*first + frame), source.info, a, frame, record, false, false), 1)) break;
-    std::sort(rows.begin(), rows.end(), [](const json& x, const json& y) { return x["time"].get<double>() < y["time"].get<double>(); });
-    data.view = {{"why", ""}, {"low", point(record.box.low)}, {"high", point(record.box.high)}, {"grains", record.id.size()}, {"grains_section", grains_section},
-                 {"walls", walls}, {"frames", rows}, {"all_frames", a.frames.size()}, {"part_reach", part_reach}};
-    return data;
   } catch (const jam::DataError& error) {
     return no_scene(fmt::format("The snapshots could not be read: {}", error.what()));
   }

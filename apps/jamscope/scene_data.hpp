@@ -39,7 +39,7 @@ struct SceneData {
 
 // Frames of `source` that the analysis is of. `room`: bytes that the sections may take. `file`: where they are stored, for the capture.h5 beside it; or
 // empty. Where a frame cannot be read, the view says why.
-SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& analysis, const jam::Series& series, std::size_t room, int threads,
+SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& analysis, const jam::Series& series, std::size_t room,
                      const std::filesystem::path& file = {});
 // Of data whose snapshots are not at hand.
 SceneData no_scene(const std::string& why);

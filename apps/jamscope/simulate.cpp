@@ -155,7 +155,7 @@ class Run {
     facts.warnings = file_.warnings;
     jam::write_xdmf(folder_ / "run.xdmf", folder_ / "run.h5");
     const jam::SnapshotSource stored = jam::open_jamscope_file(snapshots());
-    write_outputs(folder_.string(), info_, analysis, series_, facts, &stored, snapshots(), options_.threads);
+    write_outputs(folder_.string(), info_, analysis, series_, facts, &stored, snapshots());
     return analysis;
   }
 
