@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build git ca-certificates pkg-config
-  libeigen3-dev libboost-graph-dev libboost-iostreams-dev libhdf5-dev libcgal-dev libspectra-dev libmetis-dev libgmp-dev libmpfr-dev
+  libeigen3-dev libboost-graph-dev libboost-iostreams-dev libhdf5-dev libdeflate-dev libcgal-dev libspectra-dev libmetis-dev libgmp-dev libmpfr-dev
   libgtest-dev libgmock-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libssl-dev libudunits2-dev
   python3-dev python3-numpy python3-h5py pybind11-dev  # the Python module and its tests
 )

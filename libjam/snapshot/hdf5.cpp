@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "libjam/errors.hpp"
+#include "libjam/snapshot/deflated_chunks.hpp"
 
 static_assert(std::is_same_v<hid_t, std::int64_t>, "HDF5 1.10 or newer");
 
@@ -593,6 +594,8 @@ void File::read_array(const std::string& name, Type type, std::uint64_t start, c
   herr_t status = -1;
   if (rank == 0) {
     status = H5Dread(dataset.get(), memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+  } else if (read_deflated_rows(dataset.get(), memory_type(type), start, shape.empty() ? 1 : shape[0], data)) {
+    return;
   } else {
     // A one-dimensional array and one with a single component per row are the same to the caller.
     std::vector<hsize_t> count(static_cast<std::size_t>(rank), 1), offset(static_cast<std::size_t>(rank), 0);
