@@ -41,4 +41,12 @@ fi
 check "libdem without libjam" -LE -DJAMSCOPE_BUILD_DEM=ON -DJAMSCOPE_BUILD_JAM=OFF
 check "libjam without libdem" -LE -DJAMSCOPE_BUILD_DEM=OFF -DJAMSCOPE_BUILD_JAM=ON
 check "all" -LE -DJAMSCOPE_BUILD_DEM=ON -DJAMSCOPE_BUILD_JAM=ON
+
+# The page of the report: its own tests, and whether the checked-in bundle is what its sources build.
+echo "== report page"
+if command -v npm >/dev/null && node -e 'const [a, b] = process.versions.node.split(".").map(Number); process.exit(a > 20 || (a === 20 && b >= 19) ? 0 : 1)'; then
+  (cd apps/report && npm ci --no-audit --no-fund && npm test && npm run check-bundle)
+else
+  echo "left out: npm with Node 20.19 or newer is not installed"
+fi
 echo "all checks passed"
