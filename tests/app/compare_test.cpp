@@ -20,6 +20,8 @@ std::string record(const Scratch& scratch, const std::string& name, const std::v
   jam::Analysis a;
   a.frames.resize(2);
   a.frames[1].time = 2;
+  a.loaded.count.resize(2);
+  a.blade.resize(2);
   a.observed_time = 2;
   a.sampling_interval = 2e-3;
   if (every_step) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace jam::h5 {
@@ -34,7 +35,9 @@ class DeflatedChunks : public ::testing::Test {
     H5Pset_chunk(plan, rank, chunks);
     if (filters == shuffle_and_deflate) H5Pset_shuffle(plan);
     if (filters != none) H5Pset_deflate(plan, 1);
-    dataset_ = H5Dcreate2(file_, ("a" + std::to_string(count_++)).c_str(), type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
+    std::string name = "array";
+    name += std::to_string(count_++);
+    dataset_ = H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
     std::mt19937_64 random(count_);
     std::vector<T> values(rows * width);
     for (T& value : values) value = T(random() % 1000);
