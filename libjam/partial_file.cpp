@@ -1,6 +1,7 @@
 #include "libjam/partial_file.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 #include "libjam/errors.hpp"
@@ -132,6 +133,7 @@ PartialAnalysis read_partial(const std::filesystem::path& path) {
   const auto jammed = read_parts(file, "/partial/rows", "jammed", read_table<JammedSample>(file, "/partial/jammed"), rows.size());
   const auto nearly = read_parts(file, "/partial/rows", "nearly", read_table<JammedSample>(file, "/partial/nearly"), rows.size());
   part.frames.resize(rows.size());
+  for (const auto& grains : loaded) part.loaded += grains.size();
   for (std::size_t k = 0; k < rows.size(); ++k) {
     ExaminedFrame& f = part.frames[k];
     f.summary = summaries[k];
@@ -158,6 +160,23 @@ PartialAnalysis read_partial(const std::filesystem::path& path) {
   return part;
 }
 
+void add_frame(PartialAnalysis& part, ExaminedFrame frame) {
+  part.loaded += frame.loaded.size();
+  part.frames.push_back(std::move(frame));
+  if (part.loaded <= 4 * LoadedGrains::most) return;
+  std::vector<double> force;
+  for (const ExaminedFrame& f : part.frames)
+    for (const LoadedGrain& g : f.loaded) force.push_back(g.force);
+  const auto place = force.begin() + std::ptrdiff_t(2 * LoadedGrains::most);
+  std::nth_element(force.begin(), place, force.end(), std::greater<>());
+  part.loaded = 0;
+  for (ExaminedFrame& f : part.frames) {
+    std::erase_if(f.loaded, [&](const LoadedGrain& g) { return !(g.force > *place); });
+    f.loaded.shrink_to_fit();
+    part.loaded += f.loaded.size();
+  }
+}
+
 PartialAnalysis joined(std::vector<PartialAnalysis> parts, const std::vector<std::string>& names) {
   if (parts.empty()) return {};
   std::vector<std::size_t> order(parts.size());
@@ -172,7 +191,7 @@ PartialAnalysis joined(std::vector<PartialAnalysis> parts, const std::vector<std
     const std::uint64_t end = whole.first_frame + whole.frames.size();
     if (next.first_frame != end)
       throw DataError(name + ": begins at frame " + std::to_string(next.first_frame) + ", expected frame " + std::to_string(end) + ", where " + before + " ends");
-    std::move(next.frames.begin(), next.frames.end(), std::back_inserter(whole.frames));
+    for (ExaminedFrame& frame : next.frames) add_frame(whole, std::move(frame));
     schema::append(whole.series, next.series);
   }
   return whole;

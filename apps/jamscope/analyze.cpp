@@ -94,13 +94,13 @@ std::string in_folder(const std::string& folder) { return (std::filesystem::path
 
 jam::PartialAnalysis examine_frames(const jam::SnapshotSource& source, const jam::Pipeline& pipeline, FrameRange range, int threads,
                                     const std::function<void(const jam::FrameSummary&)>& seen) {
-  jam::PartialAnalysis part{source.info, pipeline.criteria(), range.first, {}, series_of(source, range)};
+  jam::PartialAnalysis part{source.info, pipeline.criteria(), range.first, {}, series_of(source, range), 0};
   const auto examine = [&](std::size_t frame, const jam::Snapshot*, const jam::Snapshot& snapshot) {
     return pipeline.examine(snapshot, frame);
   };
   for_frames_in_flight(source, range.first, range.last, threads, false, examine, [&](jam::ExaminedFrame frame) {
     seen(frame.summary);
-    part.frames.push_back(std::move(frame));
+    add_frame(part, std::move(frame));
   });
   return part;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <sstream>
 
@@ -78,8 +79,8 @@ struct WholeRun {
 
   PartialAnalysis part(std::size_t first, std::size_t last) const {
     const Pipeline pipeline(info, criteria);
-    PartialAnalysis p{info, pipeline.criteria(), first, {}, schema::rows_of(series, first == 0 ? 0 : rows[first - 1], rows[last - 1])};
-    for (std::size_t k = first; k < last; ++k) p.frames.push_back(pipeline.examine(frames[k], k));
+    PartialAnalysis p{info, pipeline.criteria(), first, {}, schema::rows_of(series, first == 0 ? 0 : rows[first - 1], rows[last - 1]), 0};
+    for (std::size_t k = first; k < last; ++k) add_frame(p, pipeline.examine(frames[k], k));
     return p;
   }
 };
@@ -135,6 +136,36 @@ TEST_F(PartialFile, AnyCuttingGivesTheSameBytes) {
     write_results(folder_ / "glued.h5", glued, run.info);
     EXPECT_EQ(bytes_of(folder_ / "glued.h5"), whole) << cuts << " cuts";
   }
+}
+
+// However many grains are under load, a part keeps some, and the analysis the strongest of all frames, cut or not.
+TEST(PartialAnalysisOfManyLoads, KeepsTheStrongest) {
+  constexpr std::size_t grains = 90'000, frames = 20;  // 1.8 million
+  std::mt19937_64 random(3);
+  std::vector<ExaminedFrame> all(frames);
+  std::vector<double> forces;
+  LoadedGrains at_once;
+  for (ExaminedFrame& f : all) {
+    for (std::size_t k = 0; k < grains; ++k) {
+      f.loaded.push_back({ParticleId(k), double(random() >> 11) * 0x1.0p-43, Vec3f::Zero(), 0, false});
+      forces.push_back(f.loaded.back().force);
+    }
+    at_once.add(f.loaded);
+  }
+  std::sort(forces.begin(), forces.end(), std::greater<>());
+  PartialAnalysis left, right;
+  for (std::size_t k = 0; k < frames; ++k) add_frame(k < 9 ? left : right, all[k]);
+  EXPECT_LE(left.loaded, 4 * LoadedGrains::most);
+  for (ExaminedFrame& f : right.frames) add_frame(left, std::move(f));
+  EXPECT_LE(left.loaded, 4 * LoadedGrains::most);
+  LoadedGrains glued;
+  for (const ExaminedFrame& f : left.frames) glued.add(f.loaded);
+  for (LoadedGrains* kept : {&at_once, &glued}) {
+    kept->keep(LoadedGrains::most);
+    EXPECT_EQ(kept->grains.size(), LoadedGrains::most);
+    EXPECT_EQ(kept->floor, forces[LoadedGrains::most]);
+  }
+  EXPECT_EQ(at_once.count, glued.count);
 }
 
 // A part by itself is the analysis of its frames.

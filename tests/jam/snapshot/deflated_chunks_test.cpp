@@ -16,6 +16,7 @@ namespace {
 class DeflatedChunks : public ::testing::Test {
  protected:
   DeflatedChunks() : path_(std::filesystem::path(testing::TempDir()) / ("deflated_" + std::to_string(getpid()) + ".h5")) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // quiet, as File is
     file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   }
   ~DeflatedChunks() override {
