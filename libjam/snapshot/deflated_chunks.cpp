@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace jam::h5 {
@@ -27,12 +28,11 @@ void unshuffle(const unsigned char* from, std::size_t elements, unsigned char* t
   for (std::size_t k = 0; k < elements; ++k)
     for (std::size_t byte = 0; byte < size; ++byte) to[k * size + byte] = from[byte * elements + k];
 }
-bool unshuffle(std::size_t size, const unsigned char* from, std::size_t bytes, unsigned char* to) {
+void unshuffle(std::size_t size, const unsigned char* from, std::size_t bytes, unsigned char* to) {
   switch (size) {
-    case 1: std::memcpy(to, from, bytes); return true;
-    case 4: unshuffle<4>(from, bytes / 4, to); return true;
-    case 8: unshuffle<8>(from, bytes / 8, to); return true;
-    default: return false;
+    case 4: return unshuffle<4>(from, bytes / 4, to);
+    case 8: return unshuffle<8>(from, bytes / 8, to);
+    default: std::memcpy(to, from, bytes);
   }
 }
 
@@ -48,24 +48,106 @@ std::size_t shuffled_size(hid_t plan) {
   return H5Pget_filter2(plan, 1, &flags, &count, values.data(), 0, nullptr, &config) == H5Z_FILTER_DEFLATE ? size : 0;
 }
 
+template <std::size_t size>
+void shuffle(const unsigned char* from, std::size_t elements, unsigned char* to) {
+  for (std::size_t byte = 0; byte < size; ++byte)
+    for (std::size_t k = 0; k < elements; ++k) to[byte * elements + k] = from[k * size + byte];
+}
+void shuffle(std::size_t size, const unsigned char* from, std::size_t bytes, unsigned char* to) {
+  switch (size) {
+    case 4: return shuffle<4>(from, bytes / 4, to);
+    case 8: return shuffle<8>(from, bytes / 8, to);
+    default: std::memcpy(to, from, bytes);
+  }
+}
+
+// A dataset that is stored as this file knows how.
+struct PlainChunks {
+  std::size_t element = 0;                  // bytes
+  std::uint64_t rows = 0, chunk_rows = 0;
+  std::size_t row_bytes = 0;
+  std::size_t chunk_bytes() const { return std::size_t(chunk_rows) * row_bytes; }
+};
+
+std::optional<PlainChunks> plain_chunks(hid_t dataset, hid_t memory) {
+  const Close stored{H5Tclose, H5Dget_type(dataset)}, plan{H5Pclose, H5Dget_create_plist(dataset)}, space{H5Sclose, H5Dget_space(dataset)};
+  if (stored.id < 0 || plan.id < 0 || space.id < 0 || H5Tequal(stored.id, memory) <= 0 || H5Pget_layout(plan.id) != H5D_CHUNKED) return std::nullopt;
+  const std::size_t element = H5Tget_size(stored.id);
+  if ((element != 1 && element != 4 && element != 8) || shuffled_size(plan.id) != element) return std::nullopt;
+  const int rank = H5Sget_simple_extent_ndims(space.id);
+  std::array<hsize_t, 2> shape{1, 1}, chunk{1, 1};
+  if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space.id, shape.data(), nullptr) != rank || H5Pget_chunk(plan.id, rank, chunk.data()) != rank)
+    return std::nullopt;
+  if (chunk[1] != shape[1] || chunk[0] == 0 || shape[1] == 0 || shape[1] > largest_chunk || chunk[0] > largest_chunk / shape[1] / element) return std::nullopt;
+  return PlainChunks{element, shape[0], chunk[0], std::size_t(shape[1]) * element};
+}
+
+// RFC 1951, section 3.2.4: blocks stored as they are. The last of them may end the stream.
+void store(const unsigned char* from, std::size_t bytes, bool ends, std::vector<unsigned char>& stream) {
+  constexpr std::size_t most = 65535;
+  for (std::size_t at = 0; at < bytes; at += most) {
+    const auto length = std::uint16_t(std::min(most, bytes - at));
+    const auto complement = std::uint16_t(~length);
+    stream.push_back(ends && at + length == bytes ? 1 : 0);
+    for (const std::uint16_t number : {length, complement}) {
+      stream.push_back(std::uint8_t(number & 0xFF));
+      stream.push_back(std::uint8_t(number >> 8));
+    }
+    stream.insert(stream.end(), from + at, from + at + length);
+  }
+}
+
+// What deflate makes of a chunk.
+class Packer {
+ public:
+  Packer() : compress_(libdeflate_alloc_compressor(level), libdeflate_free_compressor) {}
+  explicit operator bool() const { return compress_ != nullptr; }
+
+  // A stream as zlib's (RFC 1950), which lives until the next call.
+  const std::vector<unsigned char>& pack(const unsigned char* shuffled, std::size_t bytes, std::size_t planes) {
+    const std::size_t plane = bytes / planes;
+    std::size_t noise = 0;
+    while (noise < planes && is_noise(shuffled + noise * plane, plane)) ++noise;
+    stream_ = {0x78, 0x01};  // deflate with a window of 32 kB, fast
+    const std::size_t stored = noise * plane;
+    store(shuffled, stored, noise == planes, stream_);
+    if (noise < planes) {
+      const std::size_t before = stream_.size(), most = libdeflate_deflate_compress_bound(compress_.get(), bytes - stored);
+      stream_.resize(before + most);
+      stream_.resize(before + libdeflate_deflate_compress(compress_.get(), shuffled + stored, bytes - stored, stream_.data() + before, most));
+    }
+    const std::uint32_t check = libdeflate_adler32(1, shuffled, bytes);
+    for (int shift = 24; shift >= 0; shift -= 8) stream_.push_back(std::uint8_t(check >> shift));
+    return stream_;
+  }
+
+ private:
+  static constexpr int level = 1;
+  static constexpr std::size_t sample = 8192;  // bytes
+
+  // Does coding save less than a tenth of the first of these bytes?
+  bool is_noise(const unsigned char* bytes, std::size_t count) {
+    std::array<unsigned char, sample> coded;
+    count = std::min(count, sample);
+    return libdeflate_deflate_compress(compress_.get(), bytes, count, coded.data(), count - count / 10) == 0;
+  }
+
+  std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compress_;
+  std::vector<unsigned char> stream_;
+};
+
 }  // namespace
 
 bool read_deflated_rows(hid_t dataset, hid_t memory, std::uint64_t start, std::uint64_t count, void* rows) {
-  const Close stored{H5Tclose, H5Dget_type(dataset)}, plan{H5Pclose, H5Dget_create_plist(dataset)}, space{H5Sclose, H5Dget_space(dataset)};
-  if (stored.id < 0 || plan.id < 0 || space.id < 0 || H5Tequal(stored.id, memory) <= 0 || H5Pget_layout(plan.id) != H5D_CHUNKED) return false;
-  const std::size_t element = H5Tget_size(stored.id);
-  if (element == 0 || shuffled_size(plan.id) != element) return false;
-  const int rank = H5Sget_simple_extent_ndims(space.id);
-  std::array<hsize_t, 2> shape{1, 1}, chunk{1, 1};
-  if (rank < 1 || rank > 2 || H5Sget_simple_extent_dims(space.id, shape.data(), nullptr) != rank || H5Pget_chunk(plan.id, rank, chunk.data()) != rank) return false;
-  if (chunk[1] != shape[1] || chunk[0] == 0 || shape[1] == 0 || shape[1] > largest_chunk || chunk[0] > largest_chunk / shape[1] / element) return false;
-  const std::size_t row = std::size_t(shape[1]) * element, chunk_bytes = std::size_t(chunk[0]) * row;
-
+  const auto plain = plain_chunks(dataset, memory);
+  if (!plain) return false;
+  const std::uint64_t chunk = plain->chunk_rows;
+  const std::size_t row = plain->row_bytes, chunk_bytes = plain->chunk_bytes();
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> inflate(libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
   if (!inflate) return false;
   std::vector<unsigned char> packed, shuffled(chunk_bytes), whole;
   auto* const to = static_cast<unsigned char*>(rows);
-  for (std::uint64_t first = start / chunk[0] * chunk[0]; first < start + count; first += chunk[0]) {
+  for (std::uint64_t first = start / chunk * chunk; first < start + count; first += chunk) {
     const std::array<hsize_t, 2> offset{first, 0};
     hsize_t bytes = 0;
     if (H5Dget_chunk_storage_size(dataset, offset.data(), &bytes) < 0 || bytes == 0 || bytes > 2 * chunk_bytes + 1024) return false;
@@ -73,14 +155,34 @@ bool read_deflated_rows(hid_t dataset, hid_t memory, std::uint64_t start, std::u
     std::uint32_t skipped = 0;
     if (H5Dread_chunk(dataset, H5P_DEFAULT, offset.data(), &skipped, packed.data()) < 0 || skipped != 0) return false;
     if (libdeflate_zlib_decompress(inflate.get(), packed.data(), packed.size(), shuffled.data(), chunk_bytes, nullptr) != LIBDEFLATE_SUCCESS) return false;
-    const std::uint64_t begin = std::max(first, start), end = std::min<std::uint64_t>(first + chunk[0], start + count);
-    if (begin == first && end == first + chunk[0]) {
-      if (!unshuffle(element, shuffled.data(), chunk_bytes, to + (begin - start) * row)) return false;
+    const std::uint64_t begin = std::max(first, start), end = std::min(first + chunk, start + count);
+    if (begin == first && end == first + chunk) {
+      unshuffle(plain->element, shuffled.data(), chunk_bytes, to + (begin - start) * row);
       continue;
     }
     whole.resize(chunk_bytes);
-    if (!unshuffle(element, shuffled.data(), chunk_bytes, whole.data())) return false;
+    unshuffle(plain->element, shuffled.data(), chunk_bytes, whole.data());
     std::memcpy(to + (begin - start) * row, whole.data() + (begin - first) * row, std::size_t(end - begin) * row);
+  }
+  return true;
+}
+
+bool write_deflated_rows(hid_t dataset, hid_t memory, std::uint64_t rows_before, std::uint64_t start, std::uint64_t count, const void* rows) {
+  const auto plain = plain_chunks(dataset, memory);
+  if (!plain || start % plain->chunk_rows != 0 || start + count > plain->rows) return false;
+  if (const bool ends_within_chunk = count % plain->chunk_rows != 0; ends_within_chunk && rows_before > start + count) return false;
+  Packer packer;
+  if (!packer) return false;
+  std::vector<unsigned char> whole(plain->chunk_bytes()), shuffled(plain->chunk_bytes());
+  const auto* const from = static_cast<const unsigned char*>(rows);
+  for (std::uint64_t done = 0; done < count; done += plain->chunk_rows) {
+    const std::size_t bytes = std::size_t(std::min(plain->chunk_rows, count - done)) * plain->row_bytes;
+    std::memcpy(whole.data(), from + done * plain->row_bytes, bytes);
+    std::fill(whole.begin() + std::ptrdiff_t(bytes), whole.end(), std::uint8_t{0});
+    shuffle(plain->element, whole.data(), whole.size(), shuffled.data());
+    const std::vector<unsigned char>& stream = packer.pack(shuffled.data(), shuffled.size(), plain->element);
+    const std::array<hsize_t, 2> offset{start + done, 0};
+    if (H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, offset.data(), stream.size(), stream.data()) < 0) return false;
   }
   return true;
 }

@@ -253,6 +253,14 @@ std::optional<std::vector<hsize_t>> shape_of_space(hid_t space) {
   return shape;
 }
 
+std::optional<Layout> layout_of(const Handle& dataset) {
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  const Handle type(H5Dget_type(dataset.get()), H5Tclose);
+  const auto shape = space.ok() ? shape_of_space(space.get()) : std::nullopt;
+  if (!shape || !type.ok()) return std::nullopt;
+  return Layout{stored_type(type.get()), {shape->begin(), shape->end()}};
+}
+
 herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* out) {
   static_cast<std::vector<std::string>*>(out)->emplace_back(name);
   return 0;
@@ -427,14 +435,16 @@ std::vector<std::string> File::children(const std::string& group) const {
 
 Layout File::layout(const std::string& name) const {
   const Quiet quiet;
-  if (!exists(name)) fail(name, "missing");
   const Handle dataset = open_dataset(id_, name);
-  if (!dataset.ok()) fail(name, with_reason("is not a readable array"));
-  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  const Handle type(H5Dget_type(dataset.get()), H5Tclose);
-  const auto shape = space.ok() ? shape_of_space(space.get()) : std::nullopt;
-  if (!shape || !type.ok()) fail(name, with_reason("has no readable shape"));
-  return {stored_type(type.get()), {shape->begin(), shape->end()}};
+  if (!dataset.ok()) fail_to_open(name);
+  const auto stored = layout_of(dataset);
+  if (!stored) fail(name, with_reason("has no readable shape"));
+  return *stored;
+}
+
+void File::fail_to_open(const std::string& name) const {
+  const std::string problem = with_reason("is not a readable array");
+  fail(name, exists(name) ? problem : "missing");
 }
 
 std::uint64_t File::stored_bytes(const std::string& name) const {
@@ -554,10 +564,14 @@ void File::write_texts(const std::string& name, const std::vector<std::string>& 
   set_attribute(name, "doc", doc);
 }
 
-void File::check_rows(const std::string& name, Type type, std::uint64_t width, std::uint64_t start,
-                      std::uint64_t count) const {
+void File::get_rows(const std::string& name, Type type, std::uint64_t width, std::uint64_t start, std::uint64_t count,
+                    const std::function<void*()>& room) const {
   const Quiet quiet;
-  const Layout stored = layout(name);
+  const Handle dataset = open_dataset(id_, name);
+  if (!dataset.ok()) fail_to_open(name);
+  const auto layout = layout_of(dataset);
+  if (!layout) fail(name, with_reason("has no readable shape"));
+  const Layout& stored = *layout;
   if (!readable_as(stored.type, type)) {
     fail(name, "has elements of type " + name_of(stored.type) + ", expected " + name_of(type));
   }
@@ -569,47 +583,34 @@ void File::check_rows(const std::string& name, Type type, std::uint64_t width, s
     fail(name, "has " + std::to_string(stored.rows()) + " rows, expected at least " + std::to_string(start) + " + " +
                    std::to_string(count));
   }
+  const Handle plan(H5Dget_create_plist(dataset.get()), H5Pclose);
+  const bool chunked = plan.ok() && H5Pget_layout(plan.get()) == H5D_CHUNKED;
   const std::uint64_t row_bytes = size_of(type) * std::max<std::uint64_t>(width, 1);
-  // What a chunked array holds is the sum over all its chunks. To ask for less than the file's own size does no harm, and is not worth it.
+  // What a chunked array holds is the sum over all its chunks. To ask for less than the file's own size does no harm, and the sum is not worth it.
   std::error_code error;
-  if (const std::uintmax_t file_bytes = std::filesystem::file_size(path_, error);
-      !error && count <= file_bytes / row_bytes && chunk_rows(name) > 0)
-    return;
-  if (count > largest_bytes(name) / size_of(stored.type) ||
-      count > std::numeric_limits<std::int64_t>::max() / row_bytes ||
-      count * std::max<std::uint64_t>(width, 1) * size_of(stored.type) > largest_bytes(name)) {
-    fail(name, "claims " + std::to_string(count) + " rows of " + std::to_string(row_bytes) + " bytes, but only " +
-                   std::to_string(stored_bytes(name)) + " bytes are stored");
-  }
-}
-
-void File::read_array(const std::string& name, Type type, std::uint64_t start, const std::vector<std::uint64_t>& shape,
-                      void* data) const {
-  const Quiet quiet;
-  if (!shape.empty() && shape[0] == 0) return;
-  const Handle dataset = open_dataset(id_, name);
-  if (!dataset.ok()) fail(name, with_reason("is not a readable array"));
-  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  const int rank = H5Sget_simple_extent_ndims(space.get());
-  herr_t status = -1;
-  if (rank == 0) {
-    status = H5Dread(dataset.get(), memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
-  } else if (read_deflated_rows(dataset.get(), memory_type(type), start, shape.empty() ? 1 : shape[0], data)) {
-    return;
-  } else {
-    // A one-dimensional array and one with a single component per row are the same to the caller.
-    std::vector<hsize_t> count(static_cast<std::size_t>(rank), 1), offset(static_cast<std::size_t>(rank), 0);
-    std::copy_n(shape.begin(), std::min(shape.size(), count.size()), count.begin());
-    offset[0] = start;
-    const Handle memory(H5Screate_simple(rank, count.data(), nullptr), H5Sclose);
-    if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, offset.data(), nullptr, count.data(), nullptr) >= 0) {
-      status = H5Dread(dataset.get(), memory_type(type), memory.get(), space.get(), H5P_DEFAULT, data);
+  const std::uintmax_t file_bytes = std::filesystem::file_size(path_, error);
+  if (error || !chunked || count > file_bytes / row_bytes) {
+    const std::uint64_t limit = largest_bytes(name);
+    if (count > limit / size_of(stored.type) || count > std::numeric_limits<std::int64_t>::max() / row_bytes ||
+        count * std::max<std::uint64_t>(width, 1) * size_of(stored.type) > limit) {
+      fail(name, "claims " + std::to_string(count) + " rows of " + std::to_string(row_bytes) + " bytes, but only " +
+                     std::to_string(stored_bytes(name)) + " bytes are stored");
     }
   }
-  if (status < 0) {
-    fail(name, with_reason("cannot read " + std::to_string(shape.empty() ? 1 : shape[0]) + " rows from row " +
-                           std::to_string(start)));
+  void* const data = room();
+  if (count == 0) return;
+  if (chunked && read_deflated_rows(dataset.get(), memory_type(type), start, count, data)) return;
+  herr_t status = -1;
+  if (stored.shape.empty()) {
+    status = H5Dread(dataset.get(), memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
+  } else {
+    const int rank = int(stored.shape.size());
+    const std::array<hsize_t, 2> offset{start, 0}, extent{count, stored.width()};
+    const Handle space(H5Dget_space(dataset.get()), H5Sclose), memory(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
+    if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, offset.data(), nullptr, extent.data(), nullptr) >= 0)
+      status = H5Dread(dataset.get(), memory_type(type), memory.get(), space.get(), H5P_DEFAULT, data);
   }
+  if (status < 0) fail(name, with_reason("cannot read " + std::to_string(count) + " rows from row " + std::to_string(start)));
 }
 
 std::string File::read_text(const std::string& name) const {
@@ -692,11 +693,13 @@ void File::put_rows(const std::string& name, Type type, std::uint64_t start, con
     extent[0] = start + shape[0];
     if (H5Dset_extent(dataset.get(), extent.data()) < 0) fail(name, with_reason("cannot grow"));
   }
-  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  const Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
-  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, offset.data(), nullptr, count.data(), nullptr) < 0 ||
-      H5Dwrite(dataset.get(), memory_type(type), memory.get(), space.get(), H5P_DEFAULT, data) < 0) {
-    fail(name, with_reason("cannot write"));
+  if (!write_deflated_rows(dataset.get(), memory_type(type), stored.rows(), start, shape[0], data)) {
+    const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+    const Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
+    if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, offset.data(), nullptr, count.data(), nullptr) < 0 ||
+        H5Dwrite(dataset.get(), memory_type(type), memory.get(), space.get(), H5P_DEFAULT, data) < 0) {
+      fail(name, with_reason("cannot write"));
+    }
   }
   if (H5Dflush(dataset.get()) < 0) fail(name, with_reason("cannot write"));
 }

@@ -118,9 +118,11 @@ class File {
   }
   template <class T>
   std::vector<T> read_rows(const std::string& name, std::uint64_t start, std::uint64_t count) const {
-    check_rows(name, Row<T>::type, Row<T>::width, start, count);
-    std::vector<T> rows(count);
-    read_array(name, Row<T>::type, start, shape_of<T>(count), rows.data());
+    std::vector<T> rows;
+    get_rows(name, Row<T>::type, Row<T>::width, start, count, [&]() -> void* {
+      rows.resize(count);
+      return rows.data();
+    });
     return rows;
   }
   // Row-major values of a two-dimensional array; columns is set to its second dimension.
@@ -128,9 +130,11 @@ class File {
   std::vector<T> read_matrix(const std::string& name, std::uint64_t& columns) const {
     const Layout stored = layout(name);
     columns = stored.width();
-    check_rows(name, type_of<T>(), columns, 0, stored.rows());
-    std::vector<T> values(stored.rows() * columns);
-    read_array(name, type_of<T>(), 0, stored.shape, values.data());
+    std::vector<T> values;
+    get_rows(name, type_of<T>(), columns, 0, stored.rows(), [&]() -> void* {
+      values.resize(stored.rows() * columns);
+      return values.data();
+    });
     return values;
   }
   std::string read_text(const std::string& name) const;
@@ -197,14 +201,14 @@ class File {
       return {rows, Row<T>::width};
     }
   }
+  // Of an array that does not open.
+  [[noreturn]] void fail_to_open(const std::string& name) const;
   void make_parents(const std::string& name);
   void write_array(const std::string& name, Type type, const std::vector<std::uint64_t>& shape, const void* data,
                    const std::string& unit, const std::string& doc);
-  // Throws unless rows [start, start + count) of this type and width exist and the file is large enough to hold them.
-  void check_rows(const std::string& name, Type type, std::uint64_t width, std::uint64_t start,
-                  std::uint64_t count) const;
-  void read_array(const std::string& name, Type type, std::uint64_t start, const std::vector<std::uint64_t>& shape,
-                  void* data) const;
+  // Puts rows [start, start + count) where `room` says, which is asked once they are known to be of this type and width and the file to be large enough
+  // to hold them; throws where they are not.
+  void get_rows(const std::string& name, Type type, std::uint64_t width, std::uint64_t start, std::uint64_t count, const std::function<void*()>& room) const;
   void put_rows(const std::string& name, Type type, std::uint64_t start, const std::vector<std::uint64_t>& shape,
                 const void* data);
   void put_attribute(const std::string& object, const std::string& name, Type type, unsigned width, const void* data);

@@ -41,24 +41,37 @@ void check_not_negative(double value, const std::string& what, const std::string
   if (!(value >= 0) || !std::isfinite(value)) fail(place, what + " is " + text(value) + ", expected a number >= 0");
 }
 
+// Are all numbers finite? Without a branch for each, of which there are half a million in a frame: x - x is 0 of a finite number, else not a number.
+template <class Number>
+bool all_finite(const Number* numbers, std::size_t count) {
+  constexpr std::size_t width = 16;
+  std::array<Number, width> sum{};
+  std::size_t k = 0;
+  for (; k + width <= count; k += width)
+    for (std::size_t lane = 0; lane < width; ++lane) sum[lane] += numbers[k + lane] - numbers[k + lane];
+  for (; k < count; ++k) sum[0] += numbers[k] - numbers[k];
+  return std::all_of(sum.begin(), sum.end(), [](Number s) { return s == 0; });
+}
+
 // Floating-point columns only; integers have no bad values of their own.
 template <class V>
 void check_all_finite(const std::vector<V>& values, const std::string& name, const std::string& place) {
   constexpr h5::Type type = h5::Row<V>::type;
+  constexpr unsigned width = h5::Row<V>::width;
   if constexpr (type == h5::Type::f4 || type == h5::Type::f8) {
-    for (std::size_t r = 0; r < values.size(); ++r) {
-      if constexpr (h5::Row<V>::width == 1) {
-        if (!std::isfinite(values[r])) {
-          fail(place, name + " row " + text(r) + " is " + text(double(values[r])) + ", expected a finite number");
-        }
-      } else {
-        for (unsigned c = 0; c < h5::Row<V>::width; ++c) {
-          if (!std::isfinite(values[r][c])) {
-            fail(place, name + " row " + text(r) + " component " + text(c) + " is " + text(double(values[r][c])) +
-                            ", expected a finite number");
-          }
-        }
-      }
+    using Number = std::conditional_t<type == h5::Type::f4, float, double>;
+    static_assert(sizeof(V) == width * sizeof(Number));
+    if (values.empty()) return;
+    const Number* numbers = nullptr;
+    if constexpr (width == 1)
+      numbers = values.data();
+    else
+      numbers = values.front().data();
+    if (all_finite(numbers, width * values.size())) return;
+    for (std::size_t k = 0; k < width * values.size(); ++k) {
+      if (std::isfinite(numbers[k])) continue;
+      fail(place, name + " row " + text(k / width) + (width > 1 ? " component " + text(k % width) : "") + " is " + text(double(numbers[k])) +
+                      ", expected a finite number");
     }
   }
 }
@@ -100,6 +113,18 @@ void check_pp(const ParticleContacts& c, std::size_t particles, const std::strin
   schema::visit_pp(c, [&](const Item& item, const auto& values) {
     check_column(item, std::string(item.path), values, c.size(), place);
   });
+  // Mostly all is well, which one loop without a branch finds out.
+  bool fine = true;
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    const auto [i, j] = c.row[k];
+    fine &= (i < j) & (j < particles);
+  }
+  for (std::size_t k = 1; k < c.size(); ++k) {
+    const auto [i, j] = c.row[k];
+    const auto [before_i, before_j] = c.row[k - 1];
+    fine &= (before_i < i) | ((before_i == i) & (before_j < j));
+  }
+  if (fine) return;
   for (std::size_t k = 0; k < c.size(); ++k) {
     for (const std::uint32_t row : c.row[k]) {
       if (row >= particles) {

@@ -122,4 +122,71 @@ TEST_F(DeflatedChunks, DamageIsLeftToHdf5) {
 }
 
 }  // namespace
+// Numbers whose low bytes are noise, numbers that code well, and such that do so by their order alone.
+template <class T>
+std::vector<T> numbers(std::size_t count, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::vector<T> values(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    if constexpr (std::is_floating_point_v<T>)
+      values[k] = T(std::normal_distribution<double>()(random));
+    else
+      values[k] = seed % 2 == 0 ? T(k) : T(random() % 7);
+  }
+  return values;
+}
+
+TEST_F(DeflatedChunks, Hdf5ReadsWhatIsWritten) {
+  const auto check = [&]<class T>(hid_t type, hsize_t rows, hsize_t width, hsize_t chunk, const std::vector<T>& values) {
+    store<T>(type, rows, width, chunk, shuffle_and_deflate, rows);
+    ASSERT_TRUE(write_deflated_rows(dataset_, type, 0, 0, rows, values.data()));
+    std::vector<T> read(values.size());
+    ASSERT_GE(H5Dread(dataset_, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, read.data()), 0) << rows << " rows, chunks of " << chunk;
+    EXPECT_EQ(std::memcmp(read.data(), values.data(), values.size() * sizeof(T)), 0) << rows << " rows, chunks of " << chunk;
+    ASSERT_TRUE(read_deflated_rows(dataset_, type, 0, rows, read.data()));
+    EXPECT_EQ(std::memcmp(read.data(), values.data(), values.size() * sizeof(T)), 0);
+  };
+  for (const hsize_t rows : {5, 6, 20, 23})
+    for (const hsize_t width : {1, 3}) check(H5T_NATIVE_FLOAT, rows, width, 5, numbers<float>(rows * width, 1));
+  // Chunks of more than one stored block (65535 bytes) and more than the sample that noise is told by.
+  check(H5T_NATIVE_FLOAT, 70000, 3, 33342, numbers<float>(210000, 2));
+  check(H5T_NATIVE_DOUBLE, 40000, 1, 16384, numbers<double>(40000, 3));
+  check(H5T_NATIVE_UINT32, 40000, 2, 16384, numbers<std::uint32_t>(80000, 4));
+  check(H5T_NATIVE_UINT64, 40000, 1, 16384, numbers<std::uint64_t>(40000, 5));
+  check(H5T_NATIVE_UINT8, 40000, 1, 16384, numbers<std::uint8_t>(40000, 7));
+  std::mt19937_64 random(1);
+  std::vector<std::uint64_t> noise(20000);
+  for (std::uint64_t& value : noise) value = random();
+  check(H5T_NATIVE_UINT64, 20000, 1, 16384, noise);
+}
+
+// Three of a float's four bytes are noise and stored; of the last, its sign and most of its exponent, less than half a byte is left.
+TEST_F(DeflatedChunks, NoiseIsStoredAndTheRestIsCoded) {
+  constexpr hsize_t rows = 65536;
+  const auto stored = [&]<class T>(hid_t type, const std::vector<T>& values) {
+    store<T>(type, rows, 1, rows, shuffle_and_deflate, rows);
+    EXPECT_TRUE(write_deflated_rows(dataset_, type, 0, 0, rows, values.data()));
+    return double(H5Dget_storage_size(dataset_)) / double(rows);
+  };
+  const double bytes = stored(H5T_NATIVE_FLOAT, numbers<float>(rows, 1));
+  EXPECT_GT(bytes, 3.0);
+  EXPECT_LT(bytes, 3.5);
+  EXPECT_LT(stored(H5T_NATIVE_UINT32, numbers<std::uint32_t>(rows, 2)), 0.1);  // 0, 1, 2, ...
+}
+
+TEST_F(DeflatedChunks, RowsThatAreThereAreNotOverwritten) {
+  const std::vector<float> before = store<float>(H5T_NATIVE_FLOAT, 12, 1, 5), more = numbers<float>(12, 1);
+  EXPECT_FALSE(write_deflated_rows(dataset_, H5T_NATIVE_FLOAT, 12, 3, 9, more.data()));  // starts within a chunk
+  EXPECT_FALSE(write_deflated_rows(dataset_, H5T_NATIVE_FLOAT, 12, 5, 4, more.data()));  // a row behind it in its chunk
+  EXPECT_FALSE(write_deflated_rows(dataset_, H5T_NATIVE_FLOAT, 12, 10, 5, more.data()));  // no room
+  EXPECT_FALSE(write_deflated_rows(dataset_, H5T_NATIVE_DOUBLE, 12, 5, 5, more.data()));  // to be converted
+  std::vector<float> read(12);
+  ASSERT_TRUE(read_deflated_rows(dataset_, H5T_NATIVE_FLOAT, 0, 12, read.data()));
+  EXPECT_EQ(read, before);
+  ASSERT_TRUE(write_deflated_rows(dataset_, H5T_NATIVE_FLOAT, 12, 5, 5, more.data()));
+  ASSERT_TRUE(write_deflated_rows(dataset_, H5T_NATIVE_FLOAT, 12, 10, 2, more.data() + 5));  // the last of all
+  ASSERT_GE(H5Dread(dataset_, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, read.data()), 0);
+  for (std::size_t k = 0; k < 12; ++k) EXPECT_EQ(read[k], k < 5 ? before[k] : more[k - 5]) << k;
+}
+
 }  // namespace jam::h5
