@@ -90,6 +90,13 @@ void add_blade_load(FrameSummary& row, const Snapshot& snapshot, const RunInfo& 
   row.blade_torque = state.torque.z();
 }
 
+const char* why_no_flow_pattern(const std::vector<BladePose>& blade, const Gap& gap) {
+  if (!flow_bins_known(gap)) return "the radii of its tip and of the vessel and its height are not all known";
+  if (blade.empty()) return "there are no frames";
+  const bool turns = std::any_of(blade.begin(), blade.end(), [](const BladePose& pose) { return pose.angular_velocity.z() != 0; });
+  return turns ? "the source has no velocities of particles" : "it does not turn about the vertical in any frame";
+}
+
 // The site of each cluster: of its member that carries the most.
 std::vector<std::uint32_t> cluster_sites(const std::vector<Cluster>& clusters, const std::vector<JamFrame>& frames, const std::vector<BladePose>& blade,
                                          const Sites& sites) {
@@ -146,6 +153,7 @@ ExaminedFrame Pipeline::examine(const Snapshot& snapshot, std::size_t frame) con
   found.blade = blade_of(snapshot, info_.walls);
   add_blade_load(found.summary, snapshot, info_);
   found.loaded = loaded_grains(graph, network.compressive(), info_, analysis_.criteria);
+  found.flow = flow_sums(snapshot, info_, analysis_.criteria);
   found.extent = extent_of(snapshot.particles);
   found.jams = jam_frame(graph, network.compressive(), network.jammed(), network.clusters(), info_, found.blade, analysis_.criteria);
   for (const RecordedMetric& recorded : analysis_.metrics) found.metrics.push_back(find_metric(recorded.name)->value(network));
@@ -169,6 +177,7 @@ const FrameSummary& Pipeline::add(ExaminedFrame frame) {
   analysis_.blade.push_back(frame.blade);
   analysis_.loaded.add(frame.loaded);
   analysis_.loaded.extent.include(frame.extent);
+  jam::add(flow_, frame.flow);
   blade_moved_ = blade_moved_ || frame.blade_moves;
   recovered_contacts_ += frame.recovered_contacts;
   ages_pp_ = frame.ages_pp;
@@ -237,6 +246,8 @@ Analysis Pipeline::finish(const Series& series) const {
     a.jammed_in_gap_share = std::numeric_limits<double>::quiet_NaN();
     note("the gap between blade tip and vessel is not known: no particle is counted in it");
   }
+  a.flow_pattern = flow_pattern(flow_, info_.gap);
+  if (a.flow_pattern.empty()) note("no flow pattern around the blade: ", why_no_flow_pattern(a.blade, info_.gap));
   if (recovered_contacts_ > 0) {
     note(recovered_contacts_, " contacts with walls are not in the source and were recovered from force balances");
   }

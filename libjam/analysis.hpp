@@ -21,6 +21,7 @@
 #include "libjam/snapshot/snapshot.hpp"
 #include "libjam/statistics/contact_life.hpp"
 #include "libjam/statistics/flow_energy.hpp"
+#include "libjam/statistics/flow_pattern.hpp"
 #include "libjam/statistics/jam_statistics.hpp"
 #include "libjam/statistics/sampled_durations.hpp"
 #include "libjam/statistics/survival.hpp"
@@ -76,6 +77,7 @@ struct Analysis {
   LoadedGrains loaded;             // for counts at other thresholds
   std::vector<BladePose> blade;    // [F] of the first wall that is a blade
   std::vector<ContactLife> contact_life;  // by octaves of life; empty where the source does not follow contacts from step to step
+  std::vector<FlowBin> flow_pattern;      // [FlowBin::count], empty where it is not known
   std::vector<std::string> notes;  // what could not be computed from this data, and why
 };
 
@@ -94,6 +96,7 @@ struct ExaminedFrame {
   bool blade_moves = false, tangential_forces_missing = false;
   BladePose blade;  // of the first wall that is one
   std::vector<LoadedGrain> loaded;
+  FlowSums flow;  // sums are exact: those of later frames may come with this one, which then have none
   Extent extent;
   std::size_t recovered_contacts = 0;
   Series::EndedContacts ages_pp{}, ages_pw{};  // contacts by age
@@ -126,6 +129,7 @@ class Pipeline {
   Analysis analysis_;
   std::vector<JamFrame> jam_frames_;
   std::vector<double> frame_power_;  // ExaminedFrame::power of each
+  FlowSums flow_;
   std::size_t events_so_far_ = 0;
   std::size_t recovered_contacts_ = 0;
   Series::EndedContacts ages_pp_{}, ages_pw_{};  // of the last frame

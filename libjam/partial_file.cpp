@@ -100,6 +100,7 @@ void write_partial(const std::filesystem::path& path, const PartialAnalysis& par
     write_table(file, "/partial/nearly",
                 write_parts(file, "/partial/rows", "nearly", "/partial/nearly", part.frames,
                             [](const ExaminedFrame& f) -> const std::vector<JammedSample>& { return f.jams.nearly; }));
+    write_table(file, "/partial/flow", part.frames.empty() ? std::vector<FlowSums::Bin>{} : part.frames.front().flow.bins);
     const std::vector<std::string> names = metric_names(part.criteria);
     for (std::size_t m = 0; m < names.size(); ++m) {
       std::vector<double> values;
@@ -143,6 +144,11 @@ PartialAnalysis read_partial(const std::filesystem::path& path) {
     f.clusters = clusters[k];
     f.jams = {summaries[k].time, jammed[k], nearly[k]};
   }
+  if (auto flow = read_table<FlowSums::Bin>(file, "/partial/flow"); !flow.empty()) {
+    expect_rows(file, "/partial/flow", flow.size(), FlowBin::count);
+    if (part.frames.empty()) file.fail("/partial/flow", "has rows, expected none where there are no frames");
+    part.frames.front().flow.bins = std::move(flow);
+  }
   for (const std::string& name : *part.criteria.metrics) {
     const auto values = file.read<double>("/partial/metrics/" + name);
     expect_rows(file, "/partial/metrics/" + name, values.size(), rows.size());
@@ -162,6 +168,10 @@ PartialAnalysis read_partial(const std::filesystem::path& path) {
 
 void add_frame(PartialAnalysis& part, ExaminedFrame frame) {
   part.loaded += frame.loaded.size();
+  if (!part.frames.empty()) {
+    add(part.frames.front().flow, frame.flow);
+    frame.flow = {};
+  }
   part.frames.push_back(std::move(frame));
   if (part.loaded <= 4 * LoadedGrains::most) return;
   std::vector<double> force;

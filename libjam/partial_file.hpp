@@ -12,13 +12,13 @@ struct PartialAnalysis {
   RunInfo run;
   Criteria criteria;
   std::uint64_t first_frame = 0;  // of the run
-  std::vector<ExaminedFrame> frames;  // by add_frame()
+  std::vector<ExaminedFrame> frames;  // by add_frame(); the first has ExaminedFrame::flow of all of them
   Series series;  // the rows that came with these frames
   std::size_t loaded = 0;  // grains in ExaminedFrame::loaded of all frames
 };
 
 // The next frame. Of the loaded grains of all frames the part keeps a few times LoadedGrains::most, the strongest: more than the whole analysis will, so
-// that neither where a run is cut nor how long it is makes a difference to it.
+// that neither where a run is cut nor how long it is makes a difference to it. The sums of the flow go to the first frame, which is exact.
 void add_frame(PartialAnalysis& part, ExaminedFrame frame);
 
 // Throws DataError naming the file, the place and what was expected.

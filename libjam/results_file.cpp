@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* format_name = "jamscope-analysis";
 using Version = std::array<std::uint32_t, 2>;
-constexpr Version schema_version{2, 0};  // a larger second number only adds items
+constexpr Version schema_version{2, 1};  // a larger second number only adds items
 
 std::vector<ContactLife> life_of(const std::vector<ContactLifeRow>& rows) {
   std::vector<ContactLife> life;
@@ -233,6 +233,7 @@ void write_results(const std::filesystem::path& path, const Analysis& analysis, 
     for (std::size_t s = 0; s < analysis.every_step.size(); ++s)
       write_with_members(file, "/every_step/" + std::string(jam_stream_names[s]), analysis.every_step[s].jams);
     if (!analysis.contact_life.empty()) write_table(file, "/contact_life", rows_of(analysis.contact_life));
+    if (!analysis.flow_pattern.empty()) write_table(file, "/flow_pattern", analysis.flow_pattern);
     file.write_texts("/notes", analysis.notes, "what could not be computed from this data, and why");
   });
 }
@@ -271,6 +272,7 @@ Analysis read_results(const std::filesystem::path& path) {
     if (file.exists(group)) analysis.every_step.push_back({read_with_members<StepJam>(file, group), {}});
   }
   if (file.exists("/contact_life")) analysis.contact_life = life_of(read_table<ContactLifeRow>(file, "/contact_life"));
+  if (file.exists("/flow_pattern")) analysis.flow_pattern = read_table<FlowBin>(file, "/flow_pattern");
   analysis.notes = file.read_texts("/notes");
   analysis.corrected = corrected_for_sampling(analysis.events, analysis.sampling_interval, analysis.observed_time);
   check_frame_rows(file, analysis);

@@ -15,6 +15,7 @@
 //   /blade             where the blade was in each frame
 //   /every_step/...    global, particle, site: jams as every step of the run saw them, where it watched
 //   /contact_life      how long contacts lasted, by octaves, where the run counted
+//   /flow_pattern      mean velocities around the blade, one row per bin, where they are known (since 2.1)
 //   /survival_classes /jammed_histogram /flow_energy /notes
 //
 // Every dataset has the attributes `unit` and `doc`. Truth values are 0 and 1.

@@ -97,6 +97,27 @@ void columns_of(LoadedGrain*, Visit&& column) {
   column("in_gap", &LoadedGrain::in_gap, "1", "in the gap between blade tip and vessel");
 }
 
+template <class Visit>
+void columns_of(FlowBin*, Visit&& column) {
+  column("radius_low", &FlowBin::radius_low, "m", "distances from the vertical axis through the blade's origin from here");
+  column("radius_high", &FlowBin::radius_high, "m", "to below here");
+  column("height_low", &FlowBin::height_low, "m", "heights above the blade's origin from here");
+  column("height_high", &FlowBin::height_high, "m", "to below here");
+  column("samples", &FlowBin::samples, "1", "particles, not in the gap, summed over frames");
+  column("azimuthal", &FlowBin::azimuthal, "1", "mean velocity around the axis in the blade's own sense, by solid volume, over that of the tip; NaN in rarely visited bins");
+  column("radial", &FlowBin::radial, "1", "likewise, outward");
+  column("vertical", &FlowBin::vertical, "1", "likewise, upward");
+}
+
+template <class Visit>
+void columns_of(FlowSums::Bin*, Visit&& column) {
+  column("samples", &FlowSums::Bin::samples, "1", "particles, not in the gap, summed over frames");
+  column("tip", &FlowSums::Bin::tip, "m/s", "sum of (radius / tip radius)^3 times the tip's speed, in 2^-80, two's complement, low word first");
+  column("azimuthal", &FlowSums::Bin::azimuthal, "m/s", "likewise, with the particles' velocities around the axis in the blade's own sense");
+  column("radial", &FlowSums::Bin::radial, "m/s", "likewise, outward");
+  column("vertical", &FlowSums::Bin::vertical, "m/s", "likewise, upward");
+}
+
 // A pose, flat.
 struct BladeRow {
   double time = 0;

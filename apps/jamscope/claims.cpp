@@ -25,7 +25,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Claim {
   std::string name, says, source, expected, measure, of, run, against_of, against_run, unit;
-  std::uint64_t number = 0, first = 0;
+  std::uint64_t number = 0, first = 0, components = 1;
   List values;
   std::optional<double> low, high;
 };
@@ -89,8 +89,29 @@ struct Measure {
   const char *name, *doc;
   bool two;  // takes two runs
   double (*of)(const List& a, const List& b, const Claim& claim);
+  const char* needs = "";  // without which it is not defined, where that is not plain
 };
 double same_length(const List& a, const List& b, double (*f)(const List&, const List&)) { return a.size() == b.size() && !a.empty() ? f(a, b) : nan; }
+// Places of `components` numbers each; one of which a number is unknown is unknown.
+double rms_difference(const List& a, const List& b, const Claim& claim) {
+  if (a.size() != b.size() || a.size() % claim.components != 0) return nan;
+  double sum = 0;
+  std::size_t both = 0, either = 0;
+  for (std::size_t k = 0; k < a.size(); k += claim.components) {
+    bool in_a = true, in_b = true;
+    double square = 0;
+    for (std::size_t i = k; i < k + claim.components; ++i) {
+      in_a = in_a && std::isfinite(a[i]);
+      in_b = in_b && std::isfinite(b[i]);
+      square += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    either += in_a || in_b;
+    if (!in_a || !in_b) continue;
+    sum += square;
+    ++both;
+  }
+  return both > 0 && 2 * both >= either ? std::sqrt(sum / double(both)) : nan;
+}
 constexpr Measure measures[] = {
     {"value", "the number itself", false, [](const List& a, const List&, const Claim&) { return a.size() == 1 ? a[0] : nan; }},
     {"sum", "of the numbers of a list, from number `first` on", false,
@@ -137,18 +158,8 @@ constexpr Measure measures[] = {
          return most;
        });
      }},
-    {"rms_difference", "of two runs' lists: root of the mean of squares, over the places that both have", true,
-     [](const List& a, const List& b, const Claim&) {
-       return same_length(a, b, [](const List& x, const List& y) {
-         double sum = 0, places = 0;
-         for (std::size_t k = 0; k < x.size(); ++k) {
-           if (!std::isfinite(x[k]) || !std::isfinite(y[k])) continue;
-           sum += (x[k] - y[k]) * (x[k] - y[k]);
-           ++places;
-         }
-         return std::sqrt(sum / places);
-       });
-     }},
+    {"rms_difference", "of two runs' lists: root of the mean of squared differences, over the places that both have; with `components` = 3, squares of vectors", true,
+     rms_difference, "lists of equal length, and at least half of the places that one run has to be in both"},
     {"power", "exponent of the ratio of two runs' numbers in that of `values` = [run's, against_run's], for example their stiffnesses", true,
      [](const List& a, const List& b, const Claim& c) {
        return a.size() == 1 && b.size() == 1 && c.values.size() == 2 ? std::log(a[0] / b[0]) / std::log(c.values[0] / c.values[1]) : nan;
@@ -179,6 +190,7 @@ std::vector<Claim> read_claims(const std::string& path) {
     s.text("unit", c.unit, Need::optional);
     s.whole_number("first", c.first, Need::optional);
     s.numbers("values", c.values, Need::optional);
+    if (s.whole_number("components", c.components, Need::optional) && c.components == 0) document.problem("claim." + name + ".components", "components is 0, expected 1 or more");
     if (double value = 0; s.number("low", value, Need::optional)) c.low = value;
     if (double value = 0; s.number("high", value, Need::optional)) c.high = value;
     const bool against = s.text("against_run", c.against_run, Need::optional);
@@ -270,7 +282,7 @@ Verdict judge(const Claim& claim, const std::vector<Summary>& summaries) {
       if (const double x = measure.of(a, b, claim); std::isfinite(x)) values.push_back(x);
   v.word = "not measured";
   if (values.empty()) {
-    v.why = missing.empty() ? "not defined in these runs" : missing;
+    v.why = !missing.empty() ? missing : *measure.needs == 0 ? "not defined in these runs" : fmt::format("not defined in these runs: it needs {}", measure.needs);
     return v;
   }
   std::sort(values.begin(), values.end());

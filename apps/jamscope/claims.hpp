@@ -13,6 +13,8 @@
 //   low = 10.0                               # holds from here
 //   high = 400.0                             # to here; either may be left out
 //
+// and, where the measure uses them, `against_run`, `against_of` (default: `of`), `first`, `values`, `components` (so many numbers of a list are one place).
+//
 // Several runs of one name are repetitions (other seeds): the measure takes the median of them, and its interval goes from the smallest to the
 // largest that any choice of them gives.
 #pragma once

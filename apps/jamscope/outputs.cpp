@@ -245,6 +245,21 @@ Json places_json(const jam::JamPlaces& p) {
                               {"slow", number(p.slow)}, {"between", number(p.between)}, {"fast", number(p.fast)}}}};
 }
 
+// Bins layer by layer upward, in each from the axis outward; of each the azimuthal, radial and vertical speed in turn.
+Json flow_pattern_json(const std::vector<jam::FlowBin>& pattern) {
+  std::vector<double> radius, height, speed;
+  std::vector<std::uint64_t> samples;
+  for (const jam::FlowBin& bin : pattern) {
+    if (radius.size() < jam::FlowBin::rings) radius.push_back(bin.radius_low);
+    if (height.empty() || bin.height_low > height.back()) height.push_back(bin.height_low);
+    samples.push_back(bin.samples);
+    speed.insert(speed.end(), {bin.azimuthal, bin.radial, bin.vertical});
+  }
+  radius.push_back(pattern.back().radius_high);
+  height.push_back(pattern.back().height_high);
+  return {{"radius_m", radius}, {"height_m", height}, {"samples", samples}, {"least_samples", jam::FlowBin::least_samples}, {"speed_over_tip", numbers(speed)}};
+}
+
 Json life_json(const jam::ContactLife::Kind& kind) {
   return {{"together", number(kind.together)}, {"ended", kind.ended}, {"alive", kind.alive}};
 }
@@ -312,6 +327,7 @@ Json analysis_json(const jam::RunInfo& info, const jam::Analysis& a, const jam::
   json["frames_by_jammed_particles"] = a.jammed_histogram;
   json["blade"] = blade_json(info, a, series);
   json["flow_energy"] = flow_energy_json(a, series);
+  if (!a.flow_pattern.empty()) json["flow_pattern"] = flow_pattern_json(a.flow_pattern);
   for (std::size_t s = 0; s < a.every_step.size(); ++s)
     json["jams_at_every_step"][std::string(jam::jam_stream_names[s])] = step_stream_json(a.every_step[s], a.flow_energy.total);
   if (!a.contact_life.empty()) {

@@ -39,7 +39,8 @@ py::dict columns_named(const std::string& name) {
   if (name == "step_jams") return columns<jam::StepJam>();
   if (name == "survival_classes") return columns<jam::SurvivalClass>();
   if (name == "contact_life") return columns<jam::ContactLifeRow>();
-  throw py::value_error("there is no table '" + name + "', expected frames, clusters, cluster_links, events, cluster_events, tracks, track_points, step_jams, survival_classes or contact_life");
+  if (name == "flow_pattern") return columns<jam::FlowBin>();
+  throw py::value_error("there is no table '" + name + "', expected frames, clusters, cluster_links, events, cluster_events, tracks, track_points, step_jams, survival_classes, contact_life or flow_pattern");
 }
 
 template <class Rows>
@@ -214,6 +215,8 @@ void bind_analysis(py::module_& m) {
         return table(*rows, py::capsule(rows, [](void* memory) { delete static_cast<std::vector<jam::ContactLifeRow>*>(memory); }));
       }),
       "How long contacts last, by octaves; empty where the run did not count.");
+  c.def_property_readonly("flow_pattern", array_of([](const jam::Analysis& a, py::handle self) { return table(a.flow_pattern, self); }),
+                          "Mean velocities around the blade over that of its tip, by distance from its axis and height; empty where they are not known.");
   c.def_property_readonly("flow_energy", [](const AnalysedRun& a) -> const jam::FlowEnergy& { return a.analysis.flow_energy; }, "Work of the blades.");
   c.def_property_readonly("corrected", [](const AnalysedRun& a) -> const jam::ExponentialDurations& { return a.analysis.corrected; }, "What the global events say of all jams, those between frames too.");
   c.def_property_readonly("notes", [](const AnalysedRun& a) { return a.analysis.notes; }, "What could not be computed from this data, and why.");

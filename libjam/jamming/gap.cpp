@@ -14,11 +14,7 @@ bool in_gap(const Snapshot& snapshot, std::size_t row, const RunInfo& info, cons
   for (std::size_t w = 0; w < info.walls.size(); ++w) {
     if (info.walls[w].role != WallRole::blade) continue;
     const Vec3 from_blade = snapshot.particles.position[row].cast<double>() - snapshot.walls[w].position;
-    const double distance = std::hypot(from_blade.x(), from_blade.y());
-    if (distance > info.gap.tip_radius - criteria.gap_margin * diameter &&
-        from_blade.z() >= info.gap.z_low - diameter && from_blade.z() <= info.gap.z_high + diameter) {
-      return true;
-    }
+    if (beside_tip(std::hypot(from_blade.x(), from_blade.y()), from_blade.z(), diameter, info.gap, criteria)) return true;
   }
   return false;
 }

@@ -57,6 +57,24 @@ TEST_F(ClaimsProgram, MeasuresGiveWhatTheySay) {
   EXPECT_EQ(one("power", "x", b + "values = [9, 3]")["value"], 1.0);
 }
 
+// Places that one run does not know are left out; of vectors the squares of all components count, and one that is unknown makes the vector unknown.
+TEST_F(ClaimsProgram, DifferencesLeaveOutWhatIsUnknown) {
+  const json unknown;
+  run("1", "a", {{"list", {1.0, unknown, 3.0, 5.0}}, {"field", {1.0, 2.0, 2.0, unknown, 9.0, 9.0, 0.0, 0.0, 4.0}}, {"sparse", {1.0, 1.0, 1.0, unknown, unknown}}});
+  run("2", "b", {{"list", {2.0, 4.0, 3.0, unknown}}, {"field", {0.0, 0.0, 0.0, 7.0, 7.0, 7.0, 0.0, 0.0, 0.0}}, {"sparse", {3.0, unknown, unknown, unknown, unknown}}});
+  const std::string b = "against_run = \"b\"\nhigh = 7.0\n";
+  EXPECT_EQ(one("rms_difference", "list", b)["value"], std::sqrt(1 / 2.0));
+  EXPECT_EQ(one("rms_difference", "field", b + "components = 3\n")["value"], std::sqrt((9 + 16) / 2.0));
+  // One place of three in common is too few; so is a list that is not made of such vectors.
+  for (const json& none : {one("rms_difference", "sparse", b), one("rms_difference", "list", b + "components = 3\n")}) {
+    EXPECT_EQ(none["verdict"], "not measured");
+    EXPECT_THAT(std::string(none["how"]), HasSubstr("at least half of the places that one run has"));
+  }
+  const Outcome zero = run_program(claims("[claim.it]\nnumber = 1\nsays = \"it\"\nmeasure = \"rms_difference\"\nof = \"list\"\nrun = \"a\"\ncomponents = 0\n" + b));
+  EXPECT_EQ(zero.code, 2);
+  EXPECT_THAT(zero.err, HasSubstr("claims.toml:7:14: components is 0"));
+}
+
 TEST_F(ClaimsProgram, VerdictsAreComputed) {
   run("1", "a", {{"x", 6.0}, {"unknown", nullptr}});
   run("2", "a", {{"x", 8.0}});

@@ -160,6 +160,13 @@ TEST_F(SimulateProgram, RunsFromCaseToReportTheSameForAnyThreadsAndAgainFromItsF
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_EQ(text_of(folder_ / "one/events.csv"), text_of(folder_ / "again/events.csv"));
   EXPECT_EQ(summary(folder_ / "one")["analysis"].dump(), summary(folder_ / "again")["analysis"].dump());
+  // Grains go with the blade that drives them, more slowly than its tip.
+  const nlohmann::json flow = summary(folder_ / "one")["analysis"]["flow_pattern"]["speed_over_tip"];
+  double fastest = 0;
+  for (std::size_t k = 0; k < flow.size(); k += 3)
+    if (!flow[k].is_null()) fastest = std::max(fastest, flow[k].get<double>());
+  EXPECT_GT(fastest, 0.01);
+  EXPECT_LT(fastest, 1);
 
   // The page of the running simulation is that of its files.
   const std::string page = text_of(folder_ / "one/report.html");

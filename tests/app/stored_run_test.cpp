@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -277,6 +278,30 @@ TEST(Summary, NumbersThatDoNotExistAreNull) {
   EXPECT_TRUE(summary["analysis"]["jams"]["mean_survival_time_s"].is_null());
   EXPECT_EQ(summary["analysis"]["frames"], 0);
   EXPECT_FALSE(summary["run"].contains("case_sha256"));
+  EXPECT_FALSE(summary["analysis"].contains("flow_pattern"));
+}
+
+// Layer by layer, ring by ring, component by component; null where a bin was rarely visited.
+TEST(Summary, HasTheFlowPatternAsOneList) {
+  jam::Analysis analysis;
+  const double nan = std::nan("");
+  for (std::size_t b = 0; b < jam::FlowBin::count; ++b) {
+    const auto ring = double(b % jam::FlowBin::rings), layer = double(b / jam::FlowBin::rings), speed = double(b);
+    analysis.flow_pattern.push_back({ring, ring + 1, 2 * layer - 6, 2 * layer - 4, 200, speed, speed + 0.25, speed + 0.5});
+  }
+  analysis.flow_pattern[1] = {1, 2, -6, -4, 99, nan, nan, nan};
+  const auto flow = nlohmann::json::parse(summary_json({}, analysis, {}, {}))["analysis"]["flow_pattern"];
+  EXPECT_EQ(flow["radius_m"], (std::vector<double>{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(flow["height_m"], (std::vector<double>{-6, -4, -2, 0, 2, 4, 6, 8, 10, 12}));
+  EXPECT_EQ(flow["least_samples"], 100);
+  ASSERT_EQ(flow["samples"].size(), jam::FlowBin::count);
+  EXPECT_EQ(flow["samples"][1], 99);
+  ASSERT_EQ(flow["speed_over_tip"].size(), 3 * jam::FlowBin::count);
+  for (std::size_t b = 0; b < jam::FlowBin::count; ++b)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const nlohmann::json expected = b == 1 ? nlohmann::json() : nlohmann::json(double(b) + 0.25 * double(c));
+      EXPECT_EQ(flow["speed_over_tip"][3 * b + c], expected) << b << " " << c;
+    }
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ class Analysis(unittest.TestCase):
         self.assertGreater(len(a.step_jams["global"]), 0)
 
     def assert_same(self, a, b):
-        for name in ("frames", "clusters", "cluster_identity", "cluster_links", "cluster_events", "events", "tracks", "survival_classes", "jammed_histogram", "contact_life"):
+        for name in ("frames", "clusters", "cluster_identity", "cluster_links", "cluster_events", "events", "tracks", "survival_classes", "jammed_histogram", "contact_life", "flow_pattern"):
             ours, theirs = getattr(a, name), getattr(b, name)
             self.assertEqual(ours.dtype, theirs.dtype)
             for column in ours.dtype.names or [None]:
@@ -147,7 +147,7 @@ class Analysis(unittest.TestCase):
                 numpy.testing.assert_array_equal(table[column] if column else table, copies[name][column] if column else copies[name], name)
 
     def test_columns_say_unit_and_meaning(self):
-        for name in ("frames", "clusters", "cluster_links", "events", "cluster_events", "tracks", "survival_classes", "contact_life"):
+        for name in ("frames", "clusters", "cluster_links", "events", "cluster_events", "tracks", "survival_classes", "contact_life", "flow_pattern"):
             columns = jamscope.Analysis.columns(name)
             self.assertEqual(set(columns), set(getattr(self.analysis, name).dtype.names), name)
             for unit, doc in columns.values():

@@ -22,6 +22,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 // Ten frames, 2 ms apart:
 //
@@ -194,6 +195,43 @@ TEST(PipelineTest, SaysWhatItCouldNotCompute) {
   frames = story();
   frames[3].pw.flags = {0, contact_recovered};
   EXPECT_THAT(analyze(frames).notes, Contains(HasSubstr("1 contacts with walls are not in the source")));
+}
+
+// Grains that turn with the blade in most frames, and stand in one that has no velocities.
+TEST(PipelineTest, AddsUpTheFlowPatternOfAllFramesAndSaysWhyThereIsNone) {
+  std::vector<Snapshot> frames;
+  for (unsigned k = 0; k < 5; ++k) {
+    Snapshot s = random_network(k, 2000, 10);
+    s.time = 0.002 * k;
+    s.walls[blade_wall].angular_velocity = Vec3(0, 0, 20);
+    for (const Vec3f& at : s.particles.position)
+      if (k != 3) s.particles.velocity.push_back(Vec3f(-20 * at.y(), 20 * at.x(), 0));
+    frames.push_back(s);
+  }
+  const Analysis a = analyze(frames);
+  FlowSums sums;
+  for (const Snapshot& s : frames) add(sums, flow_sums(s, hand_made_run(), Criteria{}));
+  const std::vector<FlowBin> pattern = flow_pattern(sums, hand_made_run().gap);
+  ASSERT_EQ(a.flow_pattern.size(), FlowBin::count);
+  std::size_t known = 0;
+  for (std::size_t b = 0; b < FlowBin::count; ++b) {
+    EXPECT_EQ(a.flow_pattern[b].samples, pattern[b].samples);
+    if (pattern[b].samples < FlowBin::least_samples) continue;
+    ++known;
+    EXPECT_EQ(a.flow_pattern[b].azimuthal, pattern[b].azimuthal);
+    EXPECT_GE(a.flow_pattern[b].azimuthal, pattern[b].radius_low / 0.010);
+    EXPECT_LE(a.flow_pattern[b].azimuthal, pattern[b].radius_high / 0.010);
+  }
+  EXPECT_GT(known, 10u);
+  for (const std::string& note : a.notes) EXPECT_THAT(note, Not(HasSubstr("no flow pattern")));
+
+  EXPECT_TRUE(analyze(story()).flow_pattern.empty());
+  EXPECT_THAT(analyze(story()).notes, Contains("no flow pattern around the blade: it does not turn about the vertical in any frame"));
+  EXPECT_THAT(analyze({frames[3]}).notes, Contains("no flow pattern around the blade: the source has no velocities of particles"));
+  EXPECT_THAT(analyze({}).notes, Contains("no flow pattern around the blade: there are no frames"));
+  RunInfo info = hand_made_run();
+  info.gap.vessel_radius = 0;
+  EXPECT_THAT(analyze(frames, info).notes, Contains("no flow pattern around the blade: the radii of its tip and of the vessel and its height are not all known"));
 }
 
 TEST(PipelineTest, RefusesFramesThatDoNotFitAndStaysAsItWas) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -26,7 +27,8 @@ using ::testing::HasSubstr;
 
 constexpr std::size_t frame_count = 50;
 
-// A run of 50 frames, with a series of three windows to a frame and stays of particles in it, some still open at a frame.
+// A run of 50 frames, with a series of three windows to a frame and stays of particles in it, some still open at a frame. Its blade turns in all frames but
+// the first two, and a frame has no velocities.
 struct WholeRun {
   RunInfo info = hand_made_run();
   Criteria criteria;
@@ -42,11 +44,14 @@ struct WholeRun {
     criteria.hold_off = 0.002;
     std::mt19937_64 random(9);
     for (unsigned k = 0; k < frame_count; ++k) {
-      Snapshot s = random_network(k, 30, 12);
+      Snapshot s = random_network(k, 200, 12);
       if (k % 8 == 3 || k % 8 >= 6) s = hand_made::unloaded(s);  // pauses of one frame and of two
       s.time = 0.002 * (k + 1);
       s.step = 2000 * (k + 1);
       s.walls[hand_made::blade_wall].velocity = Vec3(0, 0, -0.02);
+      if (k >= 2) s.walls[hand_made::blade_wall].angular_velocity = Vec3(0, 0, 20 + 0.1 * k);
+      const auto speed = [&] { return float(random() % 1000) / 3000; };
+      for (std::size_t p = 0; p < s.particles.size() && k != 20; ++p) s.particles.velocity.push_back(Vec3f(speed(), speed(), speed()));
       frames.push_back(s);
       for (unsigned w = 1; w <= 3; ++w) {
         const std::uint64_t step = 2000 * k + 600 * w + (w == 3 ? 200 : 0);
@@ -109,6 +114,8 @@ TEST_F(PartialFile, AnyCuttingGivesTheSameBytes) {
   ASSERT_GT(at_once.events.size(), 5u);
   ASSERT_GT(at_once.every_step.at(1).jams.size(), 5u);
   ASSERT_FALSE(at_once.contact_life.empty());
+  const auto known = std::count_if(at_once.flow_pattern.begin(), at_once.flow_pattern.end(), [](const FlowBin& bin) { return std::isfinite(bin.azimuthal); });
+  ASSERT_GT(known, 10);
   write_results(folder_ / "whole.h5", at_once, run.info);
   const std::string whole = bytes_of(folder_ / "whole.h5");
   std::mt19937_64 random(4);
@@ -166,6 +173,23 @@ TEST(PartialAnalysisOfManyLoads, KeepsTheStrongest) {
     EXPECT_EQ(kept->floor, forces[LoadedGrains::most]);
   }
   EXPECT_EQ(at_once.count, glued.count);
+}
+
+// The flow takes the same room for any number of frames: the first frame of a part has the sums of all.
+TEST_F(PartialFile, KeepsOneFlowForAllFrames) {
+  const WholeRun run;
+  const PartialAnalysis part = run.part(0, 30);
+  EXPECT_EQ(part.frames[0].flow.bins.size(), FlowBin::count);  // whose own blade does not turn
+  for (std::size_t k = 1; k < part.frames.size(); ++k) EXPECT_TRUE(part.frames[k].flow.bins.empty());
+  PartialAnalysis broken = part;
+  broken.frames[0].flow.bins.pop_back();
+  write_partial(folder_ / "part.h5", broken);
+  try {
+    read_partial(folder_ / "part.h5");
+    FAIL();
+  } catch (const DataError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("/partial/flow: has 53 rows, expected 54"));
+  }
 }
 
 // A part by itself is the analysis of its frames.

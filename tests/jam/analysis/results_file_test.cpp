@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -56,6 +57,7 @@ Analysis busy_analysis() {
   jam.peak_particle = 7, jam.site = 3, jam.impulse = 0.02, jam.work = 1e-5, jam.path = 2e-4, jam.turned = 0.3, jam.stays = 2, jam.members = {7, 9};
   analysis.every_step = {{{jam, jam}, {}}, {{}, {}}, {{jam}, {}}};
   analysis.contact_life = {{1e-6, 2e-6, {3, 4, 1.0}, {0, 2, std::nan("")}}, {2e-6, 4e-6, {5, 6, 0.75}, {7, 8, 0.5}}};
+  analysis.flow_pattern = {{0, 1e-3, -2e-3, 0, 150, 0.5, -0.125, 1e-3}, {1e-3, 2e-3, -2e-3, 0, 7, std::nan(""), std::nan(""), std::nan("")}};
   return analysis;
 }
 
@@ -182,6 +184,13 @@ void expect_same(const Analysis& a, const Analysis& b) {
   EXPECT_EQ(a.criteria.end_force, b.criteria.end_force);
   EXPECT_EQ(a.criteria.hold_off, b.criteria.hold_off);
   EXPECT_EQ(a.criteria.shortest_jam, b.criteria.shortest_jam);
+  ASSERT_EQ(a.flow_pattern.size(), b.flow_pattern.size());
+  for (std::size_t k = 0; k < a.flow_pattern.size(); ++k) {
+    EXPECT_EQ(a.flow_pattern[k].samples, b.flow_pattern[k].samples);
+    for (const auto member : {&FlowBin::radius_low, &FlowBin::radius_high, &FlowBin::height_low, &FlowBin::height_high, &FlowBin::azimuthal, &FlowBin::radial,
+                              &FlowBin::vertical})
+      EXPECT_TRUE(same(a.flow_pattern[k].*member, b.flow_pattern[k].*member));
+  }
   ASSERT_EQ(a.contact_life.size(), b.contact_life.size());
   for (std::size_t k = 0; k < a.contact_life.size(); ++k) {
     EXPECT_EQ(a.contact_life[k].from, b.contact_life[k].from);
@@ -209,6 +218,21 @@ TEST_F(ResultsFileTest, GivesBackTheSameAnalysisBitByBit) {
 TEST_F(ResultsFileTest, HoldsAnAnalysisWithoutAnything) {
   const Analysis analysis = Pipeline(hand_made_run(), Criteria{}).finish({});
   write_results(path_, analysis, hand_made_run());
+  expect_same(analysis, read_results(path_));
+}
+
+// A file of schema 2.0 has no flow pattern.
+TEST_F(ResultsFileTest, ReadsFilesOfAnEarlierMinorVersion) {
+  Analysis analysis = busy_analysis();
+  analysis.flow_pattern.clear();
+  write_results(path_, analysis, hand_made_run());
+  {
+    h5::File file = h5::File::open_update(path_);
+    ASSERT_FALSE(file.exists("/flow_pattern"));
+    EXPECT_EQ((file.attribute<std::array<std::uint32_t, 2>>("/", "schema_version")), (std::array<std::uint32_t, 2>{2, 1}));
+    file.set_attribute("/", "schema_version", std::array<std::uint32_t, 2>{2, 0});
+    file.close();
+  }
   expect_same(analysis, read_results(path_));
 }
 
