@@ -33,7 +33,7 @@ constexpr double part_reach = 4;               // mean diameters around a jammed
 constexpr std::size_t most_frames = 500;       // of the view
 constexpr std::size_t most_fine_frames = 200;  // of those, from capture.h5
 constexpr std::size_t most_stays = 100'000;
-constexpr std::size_t most_triangles = 100'000;
+constexpr std::size_t most_triangles = 100'000;  // of a mesh; or glued grains
 constexpr std::size_t most_contacts = 40'000;  // of a frame, the strongest
 
 class Bytes {
@@ -335,7 +335,7 @@ class Sections {
 json walls_json(const jam::RunInfo& info, Sections& sections) {
   json walls = json::array();
   for (const jam::Wall& w : info.walls) {
-    json row{{"name", w.name}, {"kind", w.kind}, {"role", role_name(w.role)}, {"point", point(w.point)}, {"axis", point(w.axis)}, {"radius", w.radius},
+    json row{{"name", w.name}, {"kind", w.kind}, {"role", role_name(w.role)}, {"free", w.free_side}, {"point", point(w.point)}, {"axis", point(w.axis)}, {"radius", w.radius},
              {"high_radius", w.high_radius}, {"hole_radius", w.hole_radius}, {"low", number(w.low)}, {"high", number(w.high)}};
     if (!w.triangles.empty()) {
       if (w.triangles.size() > most_triangles) {
@@ -354,7 +354,9 @@ json walls_json(const jam::RunInfo& info, Sections& sections) {
         row["section"] = sections.add(base64(deflated(bytes.all())));
       }
     }
-    if (!w.sphere_centre.empty()) {
+    if (w.sphere_centre.size() > most_triangles) {
+      row["left_out"] = fmt::format("{} glued grains are too many for this page", w.sphere_centre.size());
+    } else if (!w.sphere_centre.empty()) {
       std::vector<float> spheres;
       for (std::size_t k = 0; k < w.sphere_centre.size(); ++k) {
         for (int axis = 0; axis < 3; ++axis) spheres.push_back(float(w.sphere_centre[k][axis]));
