@@ -1,16 +1,15 @@
 #include "apps/jamscope/scene_data.hpp"
 
 #include <fmt/format.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <boost/iostreams/device/back_inserter.hpp>
-#include <boost/iostreams/filter/zlib.hpp>
-#include <boost/iostreams/filtering_stream.hpp>
 #include <cmath>
 #include <cstring>
-#include <optional>
+#include <memory>
+#include <new>
 #include <set>
 
 #include "libjam/errors.hpp"
@@ -49,15 +48,13 @@ class Bytes {
   std::string bytes_;
 };
 
+// In the format of zlib, by libdeflate, which takes a third to a twentieth of the time of zlib's best compression for the same size.
 std::vector<char> deflated(const std::string& bytes) {
-  namespace io = boost::iostreams;
-  std::vector<char> packed;
-  {
-    io::filtering_ostream out;
-    out.push(io::zlib_compressor(io::zlib::best_compression));  // no gzip: that has a time stamp
-    out.push(io::back_inserter(packed));
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  }
+  constexpr int level = 6;  // the highest, 12, takes three times as long or more for a hundredth less
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(libdeflate_alloc_compressor(level), libdeflate_free_compressor);
+  if (!compressor) throw std::bad_alloc();
+  std::vector<char> packed(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()));
+  packed.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), packed.data(), packed.size()));
   return packed;
 }
 
