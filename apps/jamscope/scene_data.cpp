@@ -427,21 +427,6 @@ json stays_json(const jam::RunInfo& info, const jam::Analysis& a, const jam::Ser
           {"section", sections.add(std::move(section))}};
 }
 
-// The first frame of the source that the analysis has; nothing where they do not belong together.
-std::optional<std::size_t> first_frame(const jam::SnapshotSource& source, const jam::Analysis& a) {
-  if (a.frames.size() > source.frames || a.frames.empty()) return std::nullopt;
-  std::size_t low = 0, high = source.frames - a.frames.size();
-  if (low == high) return source.read(0).step == a.frames.front().step ? std::optional<std::size_t>(0) : std::nullopt;
-  while (low < high) {
-    const std::size_t middle = (low + high) / 2;
-    if (source.read(middle).time < a.frames.front().time)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return source.read(low).time == a.frames.front().time ? std::optional<std::size_t>(low) : std::nullopt;
-}
-
 SceneData scene_of(const jam::SnapshotSource& source, std::size_t first, const Record& record, const jam::Analysis& a, const jam::Series& series, std::size_t room,
                    const std::filesystem::path& file) {
   SceneData data;
@@ -495,6 +480,20 @@ std::uint16_t log_code(double value) {
 double from_log_code(std::uint16_t code) {
   if (code == 65535) return std::numeric_limits<double>::quiet_NaN();
   return code == 0 ? 0.0 : std::pow(10, (code - 1) * 18.0 / 65533 - 12);
+}
+
+std::optional<std::size_t> first_frame(const jam::SnapshotSource& source, const jam::Analysis& a) {
+  if (a.frames.size() > source.frames || a.frames.empty()) return std::nullopt;
+  std::size_t low = 0, high = source.frames - a.frames.size();
+  if (low == high) return source.read(0).step == a.frames.front().step ? std::optional<std::size_t>(0) : std::nullopt;
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (source.read(middle).time < a.frames.front().time)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return source.read(low).time == a.frames.front().time ? std::optional<std::size_t>(low) : std::nullopt;
 }
 
 SceneData no_scene(const std::string& why) {
