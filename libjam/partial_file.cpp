@@ -78,6 +78,8 @@ void write_partial(const std::filesystem::path& path, const PartialAnalysis& par
     write_run_info(file, part.run);
     file.make_group(group_name);
     file.set_attribute(group_name, "first_frame", part.first_frame);
+    file.write_texts("/partial/inputs", part.inputs, "files that the frames were read from");
+    file.write_texts("/partial/command_line", part.command_line, "that examined the frames");
     write_criteria(file, part.criteria);
     file.write_texts("/criteria/metrics", metric_names(part.criteria), "recorded for each frame");
     const auto summary = [](const ExaminedFrame& f) -> const FrameSummary& { return f.summary; };
@@ -122,6 +124,8 @@ PartialAnalysis read_partial(const std::filesystem::path& path) {
   PartialAnalysis part;
   part.run = read_run_info(file);
   part.first_frame = file.attribute<std::uint64_t>(group_name, "first_frame");
+  part.inputs = file.read_texts("/partial/inputs");
+  part.command_line = file.read_texts("/partial/command_line");
   part.criteria = read_criteria(file);
   part.criteria.metrics = file.read_texts("/criteria/metrics");
   const auto summaries = read_table<FrameSummary>(file, "/partial/frames");

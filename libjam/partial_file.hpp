@@ -2,6 +2,7 @@
 // to end give the analysis of the whole, byte for byte, wherever it was cut: events are found when all frames are there.
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "libjam/analysis.hpp"
@@ -15,6 +16,7 @@ struct PartialAnalysis {
   std::vector<ExaminedFrame> frames;  // by add_frame(); the first has ExaminedFrame::flow of all of them
   Series series;  // the rows that came with these frames
   std::size_t loaded = 0;  // grains in ExaminedFrame::loaded of all frames
+  std::vector<std::string> inputs, command_line;  // where the frames were read from, and by which command; of joined parts, those of the first
 };
 
 // The next frame. Of the loaded grains of all frames the part keeps a few times LoadedGrains::most, the strongest: more than the whole analysis will, so

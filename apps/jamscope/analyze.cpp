@@ -12,7 +12,6 @@
 #include "apps/jamscope/outputs.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/jamming/jam_criteria.hpp"
-#include "libjam/snapshot/schema.hpp"
 
 namespace jamscope {
 
@@ -67,18 +66,6 @@ namespace {
 
 constexpr const char* partial_name = "partial.h5";
 
-// The rows of the series that came with frames [first, last).
-jam::Series series_of(const jam::SnapshotSource& source, FrameRange range) {
-  const auto rows_up_to = [&](std::size_t frames) {
-    if (frames == 0) return std::size_t{0};
-    if (frames == source.frames) return source.series.size();
-    const auto& steps = source.series.step;
-    return std::size_t(std::upper_bound(steps.begin(), steps.end(), source.read(frames - 1).step) - steps.begin());
-  };
-  if (source.series.size() == 0) return {};
-  return jam::schema::rows_of(source.series, rows_up_to(range.first), rows_up_to(range.last));
-}
-
 RunFacts facts_of(const jam::RunInfo& info, const std::vector<std::string>& command_line, const std::vector<std::string>& inputs) {
   RunFacts facts = facts_of_this_process(command_line);
   const CaseTitle title = case_title(info);
@@ -94,7 +81,7 @@ std::string in_folder(const std::string& folder) { return (std::filesystem::path
 
 jam::PartialAnalysis examine_frames(const jam::SnapshotSource& source, const jam::Pipeline& pipeline, FrameRange range, int threads,
                                     const std::function<void(const jam::FrameSummary&)>& seen) {
-  jam::PartialAnalysis part{source.info, pipeline.criteria(), range.first, {}, series_of(source, range), 0};
+  jam::PartialAnalysis part{source.info, pipeline.criteria(), range.first, {}, series_of(source, range), 0, {}, {}};
   const auto examine = [&](std::size_t frame, const jam::Snapshot*, const jam::Snapshot& snapshot) {
     return pipeline.examine(snapshot, frame);
   };
@@ -124,7 +111,7 @@ int analyze(const AnalyzeOptions& options) {
   progress.total = static_cast<double>(range.last - range.first);
   std::size_t events = 0;
   bool jammed_before = false;
-  const jam::PartialAnalysis part = examine_frames(source, pipeline, range, options.threads, [&](const jam::FrameSummary& summary) {
+  jam::PartialAnalysis part = examine_frames(source, pipeline, range, options.threads, [&](const jam::FrameSummary& summary) {
     if (stop_requested()) throw UsageError("interrupted: nothing was written");
     progress.done += 1;
     progress.contacts = summary.particle_contacts + summary.wall_contacts;
@@ -138,6 +125,8 @@ int analyze(const AnalyzeOptions& options) {
   console.finished(progress);
 
   if (options.partial) {
+    part.inputs = options.input.paths;
+    part.command_line = options.command_line;
     jam::write_partial(in_folder(options.output), part);
     if (!options.quiet) fmt::print("frames {} to {} in {}\n", range.first, range.last - 1, in_folder(options.output));
     return 0;
@@ -168,7 +157,9 @@ int merge(const MergeOptions& options) {
     return 0;
   }
   const jam::Analysis analysis = jam::finish(whole);
-  write_outputs(options.output, whole.run, analysis, whole.series, facts_of(whole.run, options.command_line, names), nullptr, "");
+  const auto found = find_snapshots(options.output, whole.inputs, whole.command_line);
+  write_outputs(options.output, whole.run, analysis, whole.series, facts_of(whole.run, options.command_line, whole.inputs), found ? &found->source : nullptr,
+                found ? found->file : std::string());
   if (!options.quiet) fmt::print("{}{}results in {}\n", result_text(analysis), energy_text(whole.run, whole.series), options.output);
   return 0;
 }

@@ -442,17 +442,9 @@ void write_text_file(const std::string& path, const std::string& text) {
 }
 
 ReportContext report_context(const jam::RunInfo& info, const RunFacts& facts, const jam::Criteria& criteria) {
-  ReportContext context;
-  context.name = facts.name;
-  context.description = facts.description;
-  context.command_line = facts.command_line;
-  context.machine = facts.machine;
-  context.created_utc = facts.created_utc;
-  context.wall_seconds = facts.wall_seconds;
-  context.particle_steps_per_second = facts.particle_steps_per_second;
-  context.warnings = facts.warnings;
+  ReportContext context{facts, {}};
   if (const jam::JamCriterion& criterion = jam::criterion_of(criteria); criterion.unit != "N")
-    context.warnings.push_back(fmt::format("where this page says above {:g} N, read: {} ({}, threshold {:g})", criteria.jam_force, criterion.doc, criterion.name,
+    context.facts.warnings.push_back(fmt::format("where this page says above {:g} N, read: {} ({}, threshold {:g})", criteria.jam_force, criterion.doc, criterion.name,
                                            jam::threshold_of(criteria)));
   if (!info.case_toml.empty()) {
     try {

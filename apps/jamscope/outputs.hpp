@@ -1,6 +1,5 @@
 // The results of an analysis as files of one folder: events.csv summary.json jam.h5 report.html.
 #pragma once
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,19 +8,6 @@
 #include "libjam/snapshot/snapshot.hpp"
 
 namespace jamscope {
-
-// What this process knows and neither RunInfo nor Analysis does. Empty, 0 or NaN: not known, not written.
-struct RunFacts {
-  std::string name, description;          // of the case
-  std::vector<std::string> inputs;        // files that were analysed
-  std::vector<std::string> command_line;  // of this process
-  std::string machine;                    // "AMD EPYC 7763, 2 processors"
-  std::string created_utc;                // of the results
-  int threads = 0;
-  double wall_seconds = std::numeric_limits<double>::quiet_NaN();
-  double particle_steps_per_second = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::string> warnings;
-};
 
 // Fills machine and created_utc.
 RunFacts facts_of_this_process(std::vector<std::string> command_line);

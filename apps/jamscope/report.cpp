@@ -493,8 +493,8 @@ json run_data(const ReportRun& run, std::size_t rows) {
                        {"value", shortened(context.derived[k].value, 2000)},
                        {"unit", shortened(context.derived[k].unit, 200)}});
   const std::size_t listed = std::max<std::size_t>(rows / 5, 1);
-  return {{"name", shortened(context.name, 200)},
-          {"description", shortened(context.description, 5000)},
+  return {{"name", shortened(context.facts.name, 200)},
+          {"description", shortened(context.facts.description, 5000)},
           {"headline", headline_json(analysis, series)},
           {"criteria", criteria_json(analysis.criteria)},
           {"frames", frames_json(analysis.frames, rows)},
@@ -514,16 +514,16 @@ json run_data(const ReportRun& run, std::size_t rows) {
           {"derived", derived},
           {"run", run_json(info)},
           {"notes", texts(analysis.notes)},
-          {"warnings", texts(context.warnings)},
+          {"warnings", texts(context.facts.warnings)},
           {"report",
            {{"program", "jamscope"},
             {"version", version},
             {"commit", commit},
-            {"created_utc", context.created_utc},
-            {"machine", context.machine},
-            {"command_line", texts(context.command_line)},
-            {"wall_seconds", number(context.wall_seconds)},
-            {"particle_steps_per_second", number(context.particle_steps_per_second)}}}};
+            {"created_utc", context.facts.created_utc},
+            {"machine", context.facts.machine},
+            {"command_line", texts(context.facts.command_line)},
+            {"wall_seconds", number(context.facts.wall_seconds)},
+            {"particle_steps_per_second", number(context.facts.particle_steps_per_second)}}}};
 }
 
 }  // namespace

@@ -19,16 +19,24 @@ struct DerivedNumber {
   std::string name, value, unit;
 };
 
-// What the page says about itself that neither the run nor its analysis knows. Empty or NaN: not shown.
-struct ReportContext {
-  std::string name, description;  // of the case; without a name the page calls itself "Jam analysis"
-  std::vector<DerivedNumber> derived;
-  std::vector<std::string> command_line;  // of the program that writes this report; RunInfo::argv is that of the run
-  std::string machine;                    // "2 x Intel Xeon ..., 2 threads"
-  std::string created_utc;                // of the report
+// What the process that made results knows of them and neither RunInfo nor Analysis does; summary.json keeps it. Empty, 0 or NaN: not known, not
+// written.
+struct RunFacts {
+  std::string name, description;          // of the case; without a name the page calls itself "Jam analysis"
+  std::vector<std::string> inputs;        // files that were analysed
+  std::vector<std::string> command_line;  // of the process; RunInfo::argv is that of the run
+  std::string machine;                    // "AMD EPYC 7763, 2 processors"
+  std::string created_utc;                // of the results
+  int threads = 0;
   double wall_seconds = std::numeric_limits<double>::quiet_NaN();
   double particle_steps_per_second = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> warnings;  // for example SnapshotSource::warnings
+};
+
+// What the page says of a run beside its analysis.
+struct ReportContext {
+  RunFacts facts;
+  std::vector<DerivedNumber> derived;
 };
 
 // One run on the page. What it refers to must outlive it.

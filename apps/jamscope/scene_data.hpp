@@ -22,6 +22,7 @@
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct SceneData {
 // empty. Where a frame cannot be read, the view says why.
 SceneData scene_data(const jam::SnapshotSource& source, const jam::Analysis& analysis, const jam::Series& series, std::size_t room,
                      const std::filesystem::path& file = {});
+// The number in `source` of the first frame of the analysis; nothing where they do not belong together.
+std::optional<std::size_t> first_frame(const jam::SnapshotSource& source, const jam::Analysis& analysis);
 // Of data whose snapshots are not at hand.
 SceneData no_scene(const std::string& why);
 

@@ -11,10 +11,24 @@
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/map_file.hpp"
 #include "apps/jamscope/toml_reader.hpp"
+#include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/snapshot/open_source.hpp"
+#include "libjam/snapshot/schema.hpp"
 
 namespace jamscope {
+namespace {
+
+// The value of `--name VALUE` or `--name=VALUE` in a command line, or "".
+std::string option_value(const std::vector<std::string>& words, const std::string& name) {
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (words[k] == name && k + 1 < words.size()) return words[k + 1];
+    if (words[k].starts_with(name + "=")) return words[k].substr(name.size() + 1);
+  }
+  return "";
+}
+
+}  // namespace
 
 void assign_role(std::vector<jam::Wall>& walls, const std::string& name, jam::WallRole role) {
   std::vector<std::string> names;
@@ -51,6 +65,17 @@ FrameRange frame_range(const std::string& text, std::size_t frames) {
   return range;
 }
 
+jam::Series series_of(const jam::SnapshotSource& source, FrameRange range) {
+  const auto rows_up_to = [&](std::size_t frames) {
+    if (frames == 0) return std::size_t{0};
+    if (frames == source.frames) return source.series.size();
+    const auto& steps = source.series.step;
+    return std::size_t(std::upper_bound(steps.begin(), steps.end(), source.read(frames - 1).step) - steps.begin());
+  };
+  if (source.series.size() == 0) return {};
+  return jam::schema::rows_of(source.series, rows_up_to(range.first), rows_up_to(range.last));
+}
+
 jam::SnapshotSource open_stored_run(const InputOptions& options) {
   for (const std::string& path : options.paths) {
     std::error_code error;
@@ -68,6 +93,32 @@ jam::SnapshotSource open_stored_run(const InputOptions& options) {
   if (!options.blade.empty()) assign_role(source.info.walls, options.blade, jam::WallRole::blade);
   if (!options.vessel.empty()) assign_role(source.info.walls, options.vessel, jam::WallRole::vessel);
   return source;
+}
+
+std::optional<FoundSnapshots> find_snapshots(const std::filesystem::path& folder, const std::vector<std::string>& inputs,
+                                             const std::vector<std::string>& command_line) {
+  std::vector<InputOptions> candidates;
+  const auto add = [&](const std::filesystem::path& base) {
+    InputOptions input;
+    for (const std::string& path : inputs) input.paths.push_back((base / path).string());
+    if (const std::string map = option_value(command_line, "--map"); !map.empty()) input.map = (base / map).string();
+    input.blade = option_value(command_line, "--blade");
+    input.vessel = option_value(command_line, "--vessel");
+    if (!input.paths.empty()) candidates.push_back(input);
+  };
+  add("");
+  add(std::filesystem::absolute(folder).lexically_normal() / "..");
+  candidates.push_back({{(folder / "run.h5").string()}, "", "", ""});
+  for (const InputOptions& input : candidates) {
+    try {
+      return FoundSnapshots{open_stored_run(input), input.paths.size() == 1 ? input.paths.front() : std::string()};
+    } catch (const jam::DataError&) {
+    } catch (const dem::CaseError&) {
+    } catch (const UsageError&) {
+      // Not there, or something else by now: the next one, or none.
+    }
+  }
+  return std::nullopt;
 }
 
 jam::Criteria stored_run_criteria(const jam::RunInfo& info, const std::string& criteria_file,

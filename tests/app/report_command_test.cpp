@@ -13,8 +13,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// Two grains; the first sits between blade and vessel and carries `force` from both in frames 2 and 3.
-void write_run(const std::string& path, float force) {
+// Two grains; the first sits between blade and vessel and carries `force` from both in frames 2 and 3. With a series: one window to a frame.
+void write_run(const std::string& path, float force, bool with_series = false) {
   jam::RunInfo info;
   info.creator = "test";
   info.case_toml = "[case]\nname = \"<b>small</b>\"\ndescription = \"two grains\"\n[analysis]\njam_force = \"10 N\"\n[bed]\nseed = 1\n";
@@ -42,7 +42,16 @@ void write_run(const std::string& path, float force) {
     s.pw.wall = {0, 1};
     s.pw.normal_force = std::vector<float>(2, frame == 2 || frame == 3 ? force : 1.f);
     s.walls.resize(2);
-    writer.append(s);
+    jam::Series rows;
+    if (with_series && frame > 0) {
+      rows.time = {s.time};
+      rows.step = {s.step};
+      rows.largest_compressive_force = {2 * force};
+      rows.jammed_count = {1};
+      rows.kinetic_energy = {1e-6};
+      rows.largest_overlap = {1e-3};
+    }
+    writer.append(s, rows);
   }
 }
 
@@ -77,6 +86,37 @@ TEST(ReportProgram, FindsTheSnapshotsBesideTheResults) {
   EXPECT_EQ(runs_of(text_of(scratch / "a/report.html"))[0]["scene"]["why"], "");
 }
 
+TEST(ReportProgram, ShowsAMergedAnalysisInSpaceWhereItsSnapshotsAreStillThere) {
+  const Scratch scratch;
+  write_run(scratch / "run.h5", 15);
+  ASSERT_EQ(run_program("analyze -q " + (scratch / "run.h5") + " -o " + (scratch / "all")).code, 0);
+  const json whole = runs_of(text_of(scratch / "all/report.html"))[0];
+  for (const std::string range : {"0:2", "2:"})
+    ASSERT_EQ(run_program("analyze -q " + (scratch / "run.h5") + " --partial --frames " + range + " -o " + (scratch / ("part" + range))).code, 0);
+  const std::string merge = "merge -q --overwrite " + (scratch / "part0:2") + " " + (scratch / "part2:") + " -o " + (scratch / "merged");
+  ASSERT_EQ(run_program(merge).code, 0);
+  const std::string page = text_of(scratch / "merged/report.html");
+  EXPECT_EQ(runs_of(page)[0]["scene"], whole["scene"]);
+  EXPECT_EQ(runs_of(page)[0]["samples"], whole["samples"]);
+  ASSERT_EQ(run_program("report -q " + (scratch / "merged")).code, 0);
+  EXPECT_TRUE(text_of(scratch / "merged/report.html") == page);
+
+  std::filesystem::remove(scratch / "run.h5");
+  ASSERT_EQ(run_program(merge).code, 0);
+  EXPECT_THAT(runs_of(text_of(scratch / "merged/report.html"))[0]["scene"]["why"].get<std::string>(), HasSubstr("not at hand"));
+}
+
+TEST(ReportProgram, BuildsThePageOfSomeFramesAgain) {
+  const Scratch scratch;
+  write_run(scratch / "run.h5", 15, true);
+  ASSERT_EQ(run_program("analyze -q --frames 1:4 " + (scratch / "run.h5") + " -o " + (scratch / "a")).code, 0);
+  const std::string before = text_of(scratch / "a/report.html");
+  ASSERT_EQ(run_program("report -q " + (scratch / "a")).code, 0);
+  EXPECT_TRUE(text_of(scratch / "a/report.html") == before);
+  EXPECT_EQ(runs_of(before)[0]["scene"]["frames"].size(), 3u);
+  EXPECT_EQ(runs_of(before)[0]["series"]["rows"], 3);
+}
+
 TEST(ReportProgram, SaysOnThePageThatTheSnapshotsAreGone) {
   const Scratch scratch;
   write_run(scratch / "run.h5", 15);
@@ -88,6 +128,17 @@ TEST(ReportProgram, SaysOnThePageThatTheSnapshotsAreGone) {
   EXPECT_THAT(run["scene"]["why"].get<std::string>(), HasSubstr("neither beside them nor where"));
   EXPECT_TRUE(run["samples"].is_null());
   EXPECT_EQ(run["headline"]["events"], 1);
+}
+
+TEST(ReportProgram, TakesNothingFromSnapshotsOfAnotherRun) {
+  const Scratch scratch;
+  write_run(scratch / "run.h5", 15, true);
+  ASSERT_EQ(run_program("analyze -q --frames 1:4 " + (scratch / "run.h5") + " -o " + (scratch / "a")).code, 0);
+  jam::SnapshotWriter::create(scratch / "run.h5", {});
+  ASSERT_EQ(run_program("report -q " + (scratch / "a")).code, 0);
+  const json run = runs_of(text_of(scratch / "a/report.html"))[0];
+  EXPECT_THAT(run["scene"]["why"].get<std::string>(), HasSubstr("not those of these results"));
+  EXPECT_TRUE(run["series"].is_null());
 }
 
 TEST(ReportProgram, PutsSeveralRunsOnOnePage) {

@@ -54,15 +54,15 @@ Record made_up_run() {
   Record r;
   constexpr double interval = 2e-3;
   constexpr std::uint32_t frames = 1000;
-  r.context.name = "glass beads, gap 0.8 D90";
-  r.context.description = "A made-up record, to look at the report.";
+  r.context.facts.name = "glass beads, gap 0.8 D90";
+  r.context.facts.description = "A made-up record, to look at the report.";
   r.context.derived = {{"Gap over mean diameter", "0.81", ""}, {"Rayleigh step of the smallest grain", "0.39", "µs"}};
-  r.context.command_line = {"jamscope", "report", "out dir"};
-  r.context.machine = "2 threads";
-  r.context.created_utc = "2025-01-01T00:00:00Z";
-  r.context.wall_seconds = 5321;
-  r.context.particle_steps_per_second = 4.2e6;
-  r.context.warnings = {"12 trailing bytes of an uncommitted frame ignored"};
+  r.context.facts.command_line = {"jamscope", "report", "out dir"};
+  r.context.facts.machine = "2 threads";
+  r.context.facts.created_utc = "2025-01-01T00:00:00Z";
+  r.context.facts.wall_seconds = 5321;
+  r.context.facts.particle_steps_per_second = 4.2e6;
+  r.context.facts.warnings = {"12 trailing bytes of an uncommitted frame ignored"};
 
   r.info.creator = "jamscope";
   r.info.creator_version = "0.1.0";
@@ -348,7 +348,7 @@ TEST(Report, StaysBelowItsLargestSizeForALongRun) {
 TEST(Report, EscapesWhateverANameHolds) {
   Record r = made_up_run();
   const std::string name = "</script><script>alert(1)</script><!-- \xE2\x80\xA8 \xE2\x80\xA9 \" \\ & \x01";
-  r.context.name = name;
+  r.context.facts.name = name;
   r.info.walls[1].name = name;
   const std::string page = html(r), inner = island(page);
   EXPECT_EQ(inner.find('<'), std::string::npos);

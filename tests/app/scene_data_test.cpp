@@ -39,6 +39,7 @@ struct Made {
     vessel.kind = "cylinder";
     vessel.role = jam::WallRole::vessel;
     vessel.radius = 12.5e-3;
+    vessel.free_side = "inside";
     s.info.walls = {blade, vessel};
     s.info.gap = {11.75e-3, 12.5e-3, -3e-3, 3e-3};
     s.info.materials = {{"glass", 2500, 63e9, 0.2}};
@@ -194,6 +195,23 @@ TEST(SceneData, HoldsEveryFrameOfAShortRun) {
   Section mesh = section(data, data.view["walls"][0]);
   EXPECT_EQ(mesh.take<float>(9)[3], 1e-3f);
   EXPECT_EQ(mesh.take<std::uint32_t>(3), (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(data.view["walls"][1]["free"], "inside");
+}
+
+TEST(SceneData, HoldsGluedGrainsUnlessTheyAreTooMany) {
+  jam::SnapshotSource source = Made{}.source();
+  const jam::Analysis analysis = analysis_of(source);
+  source.info.walls[1].kind = "spheres";
+  source.info.walls[1].sphere_centre = {{0, 0, 0}, {1e-3, 0, 2e-3}};
+  source.info.walls[1].sphere_radius = {4e-4, 5e-4};
+  const SceneData few = scene_data(source, analysis, {}, 1'000'000);
+  Section spheres = section(few, few.view["walls"][1]);
+  EXPECT_EQ(spheres.take<float>(8), (std::vector<float>{0, 0, 0, 4e-4f, 1e-3f, 0, 2e-3f, 5e-4f}));
+  source.info.walls[1].sphere_centre.resize(100'001, {0, 0, 0});
+  source.info.walls[1].sphere_radius.resize(100'001, 4e-4);
+  const SceneData many = scene_data(source, analysis, {}, 1'000'000);
+  EXPECT_THAT(many.view["walls"][1]["left_out"].get<std::string>(), testing::HasSubstr("too many"));
+  EXPECT_FALSE(many.view["walls"][1].contains("section"));
 }
 
 TEST(SceneData, SpreadsFramesWhereTheRoomIsShortAndKeepsThoseOfJams) {

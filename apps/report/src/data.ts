@@ -78,7 +78,7 @@ export interface EnergyData {
   every: number; time: Column; put_in: number | null; unexplained: number | null; curves: { name: string; values: Column }[];
 }
 export interface SceneWall {
-  name: string; kind: string; role: string; point: Column; axis: Column; radius: number; high_radius: number; hole_radius: number;
+  name: string; kind: string; role: string; free: string; point: Column; axis: Column; radius: number; high_radius: number; hole_radius: number;
   low: number | null; high: number | null; left_out?: string;
   section?: number; vertices?: number; triangles?: number; spheres?: number;
 }

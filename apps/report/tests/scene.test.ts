@@ -1,10 +1,12 @@
+import { Vector3 } from 'three';
 import { describe, expect, test } from 'vitest';
 import type { SceneData, SceneFrame } from '../src/data';
 import { clustersOf, clustersOfAnalysis } from '../src/scene/clusters';
 import { clusterColour, forceRange, rangeOf, shareOf, unknownColour, viridis } from '../src/scene/colours';
-import { decodeFrame, decodeGrains, frameFor, rowOf, type Frame } from '../src/scene/frame';
+import { boundsOf, decodeFrame, decodeGrains, frameFor, rowOf, type Frame } from '../src/scene/frame';
 import { momentOf } from '../src/scene/panel';
 import { tubeRadius } from '../src/scene/tubes';
+import { endsInBox, planeInBox } from '../src/scene/walls';
 import { bands, packed, type Item } from '../src/sections/timeline';
 import { jammed } from './sample';
 
@@ -108,6 +110,41 @@ describe('colours', () => {
   test('tell clusters apart and leave the rest grey', () => {
     expect(clusterColour(-1)).toEqual(unknownColour);
     expect(clusterColour(0)).not.toEqual(clusterColour(1));
+  });
+});
+
+describe('the room of the view', () => {
+  const line = (x: number[]): Frame => ({ size: x.length, x: Float32Array.from(x), y: new Float32Array(x.length), z: new Float32Array(x.length), radius: new Float32Array(x.length).fill(0.5) }) as unknown as Frame;
+  test('is that of the grains of all its frames, to their surfaces', () => {
+    const bounds = boundsOf([line([0, 1, 2, 3]), line([1, 2, 3, 4])]);
+    expect(bounds.low.toArray()).toEqual([-0.5, -0.5, -0.5]);
+    expect(bounds.high.toArray()).toEqual([4.5, 0.5, 0.5]);
+  });
+  test('leaves out a grain that flew far off, and none that stands out a little', () => {
+    const many = Array.from({ length: 1001 }, (_, k) => k / 100);
+    expect(boundsOf([line([...many, 11])]).high.x).toBeCloseTo(11.5, 6);
+    expect(boundsOf([line([...many, 100])]).high.x).toBeCloseTo(10.5, 6);
+  });
+});
+
+describe('a wall without ends', () => {
+  const box = { low: new Vector3(0, 0, 0), high: new Vector3(2, 1, 1) };
+  test('is drawn where its plane cuts the room, counter-clockwise about its normal', () => {
+    const corners = planeInBox(new Vector3(5, 5, 0.5), new Vector3(0, 0, 1), box);
+    expect(corners.length).toBe(4);
+    expect(corners.every((c) => c.z === 0.5)).toBe(true);
+    expect(new Set(corners.map((c) => `${c.x} ${c.y}`))).toEqual(new Set(['0 0', '2 0', '2 1', '0 1']));
+    const turned = corners[1]!.clone().sub(corners[0]!).cross(corners[2]!.clone().sub(corners[1]!));
+    expect(turned.z).toBeGreaterThan(0);
+    expect(planeInBox(new Vector3(0, 0, 1), new Vector3(0, 0, -1), box).length).toBe(4); // in a face of the room
+    expect(planeInBox(new Vector3(1, 0.5, 0.5), new Vector3(1, 1, 1).normalize(), box).length).toBeGreaterThan(2);
+    expect(planeInBox(new Vector3(0, 0, 2), new Vector3(0, 0, 1), box)).toEqual([]);
+  });
+  test('goes along its axis as far as the room does, and one with ends no farther than these', () => {
+    const [origin, x] = [new Vector3(0.5, 0, 0), new Vector3(1, 0, 0)];
+    expect(endsInBox(null, null, origin, x, box)).toEqual([-0.5, 1.5]);
+    expect(endsInBox(-0.25, 9, origin, x, box)).toEqual([-0.25, 1.5]);
+    expect(endsInBox(3, 4, origin, x, box)).toEqual([3, 4]); // outside the room: as it is
   });
 });
 

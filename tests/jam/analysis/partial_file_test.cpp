@@ -84,7 +84,8 @@ struct WholeRun {
 
   PartialAnalysis part(std::size_t first, std::size_t last) const {
     const Pipeline pipeline(info, criteria);
-    PartialAnalysis p{info, pipeline.criteria(), first, {}, schema::rows_of(series, first == 0 ? 0 : rows[first - 1], rows[last - 1]), 0};
+    PartialAnalysis p{info, pipeline.criteria(), first, {}, schema::rows_of(series, first == 0 ? 0 : rows[first - 1], rows[last - 1]), 0,
+                      {"run " + std::to_string(first) + ".h5"}, {"jamscope", "analyze"}};
     for (std::size_t k = first; k < last; ++k) add_frame(p, pipeline.examine(frames[k], k));
     return p;
   }
@@ -103,6 +104,14 @@ class PartialFile : public testing::Test {
   ~PartialFile() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path folder_;
 };
+
+TEST_F(PartialFile, SaysWhereItsFramesWereReadFrom) {
+  const WholeRun run;
+  for (const std::size_t first : {0, 7}) write_partial(folder_ / (std::to_string(first) + ".h5"), run.part(first, first + 7));
+  const PartialAnalysis both = joined({read_partial(folder_ / "7.h5"), read_partial(folder_ / "0.h5")}, {"second", "first"});
+  EXPECT_THAT(both.inputs, testing::ElementsAre("run 0.h5"));
+  EXPECT_THAT(both.command_line, testing::ElementsAre("jamscope", "analyze"));
+}
 
 // The run cut into 1 to 50 parts, each through a file; neighbours are joined in a random order, each time through a file again: the results file is
 // the same byte for byte, and it is that of a pipeline that saw all frames.

@@ -1,4 +1,5 @@
 // One frame of the 3D view, unpacked. SI units.
+import { Vector3 } from 'three';
 import type { SceneData, SceneFrame } from '../data';
 import { Arrays, fromLogCode } from '../island/sections';
 
@@ -79,4 +80,25 @@ export function frameFor(frames: readonly SceneFrame[], jammed: (frame: SceneFra
     }
   });
   return { index: best, jammed: found };
+}
+
+export interface Bounds { low: Vector3; high: Vector3 } // m
+
+// The box of the grains of some frames, without those that flew far off: a few grains must not make all others small. Far is more than a quarter of the
+// length on which all but one in a hundred are.
+export function boundsOf(frames: readonly Frame[]): Bounds {
+  const bounds = { low: new Vector3(Infinity, Infinity, Infinity), high: new Vector3(-Infinity, -Infinity, -Infinity) };
+  for (const frame of frames)
+    for (const axis of ['x', 'y', 'z'] as const) {
+      const sorted = Float32Array.from(frame[axis]).sort();
+      const at = (share: number): number => sorted[Math.round(share * (sorted.length - 1))]!;
+      const reach = 0.25 * (at(0.995) - at(0.005));
+      for (let v = 0; v < frame.size; ++v) {
+        const value = frame[axis][v]!;
+        if (value < at(0.005) - reach || value > at(0.995) + reach) continue;
+        bounds.low[axis] = Math.min(bounds.low[axis], value - frame.radius[v]!);
+        bounds.high[axis] = Math.max(bounds.high[axis], value + frame.radius[v]!);
+      }
+    }
+  return bounds;
 }

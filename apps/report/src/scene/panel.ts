@@ -7,7 +7,7 @@ import { count, instant, plural, significant, withUnit } from '../numbers/format
 import { jammedIn, type Samples } from '../recount/samples';
 import { clustersOf, clustersOfAnalysis, type Clusters } from './clusters';
 import { forceRange, rangeOf, viridis, type Range } from './colours';
-import { decodeFrame, decodeGrains, frameFor, rowOf, type Frame, type Grains } from './frame';
+import { boundsOf, decodeFrame, decodeGrains, frameFor, rowOf, type Frame, type Grains } from './frame';
 import { makeViewer, type Blade, type Chains, type ColourBy, type Look, type Viewer } from './viewer';
 
 // What can be shown: a jam of a grain.
@@ -271,12 +271,16 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
   // Draws are counted; the number is there for the tests.
   const ready = (async (): Promise<void> => {
     try {
-      viewer = await makeViewer(scene, load, stage, () => {});
-      new ResizeObserver(() => viewer?.resize()).observe(stage);
-      loaded = await samples;
       // Begin with the strongest jam, on the near side.
       const strongest = data.events.reduce<EventData | null>((a, e) => (a && (a.peak_force ?? 0) >= (e.peak_force ?? 0) ? a : e), null);
-      await go(Math.max(0, strongest ? frameFor(frames, (f) => f.jammed.includes(strongest.peak_particle), strongest.peak_time ?? 0).index : 0));
+      const first = Math.max(0, strongest ? frameFor(frames, (f) => f.jammed.includes(strongest.peak_particle), strongest.peak_time ?? 0).index : 0);
+      // Room for the first and the last frame that hold all grains; where none does, for the one that is shown.
+      const whole = frames.flatMap((f, k) => (f.part ? [] : [k]));
+      const bounds = boundsOf(await Promise.all([...new Set(whole.length > 0 ? [whole[0]!, whole.at(-1)!] : [first])].map(frameAt)));
+      viewer = await makeViewer(scene, load, bounds, stage, () => {});
+      new ResizeObserver(() => viewer?.resize()).observe(stage);
+      loaded = await samples;
+      await go(first);
       const row = strongest && current ? rowOf((current as { frame: Frame }).frame, strongest.peak_particle) : -1;
       if (row >= 0) viewer.face(row);
       stage.dataset.state = 'ready';

@@ -44,6 +44,7 @@ precision highp float;
 uniform mat4 projectionMatrix;
 uniform vec3 jamColour;
 uniform vec3 selectColour;
+uniform float opacity;
 in vec3 place;
 flat in vec3 middle;
 flat in float size;
@@ -63,7 +64,7 @@ void main() {
   bool selected = flag > 1.5;
   if (flag > 0.5 && mod(flag, 2.0) > 0.5 && facing < 0.62) lit = jamColour;
   if (selected && facing < 0.36) lit = selectColour;
-  pixel = vec4(lit, 1.0);
+  pixel = vec4(lit, opacity);
   vec4 clip = projectionMatrix * vec4(hit, 1.0);
   gl_FragDepth = 0.5 * clip.z / clip.w + 0.5;
 }`;
@@ -73,6 +74,7 @@ export interface Spheres {
   material: ShaderMaterial;
   resize(n: number): void; // room for so many
   set(k: number, x: number, y: number, z: number, radius: number, colour: Rgb, flag: number): void;
+  tint(k: number, colour: Rgb): void;
   flag(k: number): number;
   changed(n: number): void; // so many are to be drawn
 }
@@ -81,7 +83,7 @@ export function makeSpheres(): Spheres {
   const material = new ShaderMaterial({
     vertexShader: vertex, fragmentShader: fragment, glslVersion: GLSL3,
     uniforms: {
-      cut: { value: new Vector4(0, 0, 0, 1) }, bulk: { value: 1 }, jamColour: { value: new Color() }, selectColour: { value: new Color() },
+      cut: { value: new Vector4(0, 0, 0, 1) }, bulk: { value: 1 }, opacity: { value: 1 }, jamColour: { value: new Color() }, selectColour: { value: new Color() },
     },
   });
   let geometry = new BufferGeometry();
@@ -109,18 +111,23 @@ export function makeSpheres(): Spheres {
     mesh.geometry = geometry;
   };
   resize(1);
+  const tint = (k: number, [r, g, b]: Rgb): void => {
+    const bytes = shade.array;
+    for (let corner = 4 * k; corner < 4 * k + 4; ++corner) {
+      bytes[4 * corner] = r;
+      bytes[4 * corner + 1] = g;
+      bytes[4 * corner + 2] = b;
+    }
+  };
   return {
-    mesh, material, resize,
-    set(k, x, y, z, radius, [r, g, b], flag) {
+    mesh, material, resize, tint,
+    set(k, x, y, z, radius, colour, flag) {
       for (let corner = 4 * k; corner < 4 * k + 4; ++corner) {
         centre.setXYZ(corner, x, y, z);
         size.setX(corner, radius);
-        const bytes = shade.array;
-        bytes[4 * corner] = r;
-        bytes[4 * corner + 1] = g;
-        bytes[4 * corner + 2] = b;
-        bytes[4 * corner + 3] = flag;
+        shade.array[4 * corner + 3] = flag;
       }
+      tint(k, colour);
     },
     flag: (k) => shade.array[16 * k + 3]!,
     changed(n) {

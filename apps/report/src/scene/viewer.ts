@@ -7,7 +7,7 @@ import type { SceneData } from '../data';
 import type { LoadSection } from '../island/sections';
 import type { Clusters } from './clusters';
 import { clusterColour, shareOf, unknownColour, viridis, type Range, type Rgb } from './colours';
-import type { Frame } from './frame';
+import type { Bounds, Frame } from './frame';
 import { flagJammed, flagSelected, makeSpheres } from './spheres';
 import { makeTubes, tubeRadius, type Tube } from './tubes';
 import { makeWalls, type Walls } from './walls';
@@ -36,7 +36,7 @@ export interface Viewer {
   resize(): void;
   recolour(): void;
   reset(): void;
-  face(row: number): void;   // the whole, with this grain on the near side
+  face(row: number): void;   // the whole; in a round vessel with this grain on the near side
   lookAt(row: number): void; // close up
   turn(right: number, up: number): void;
   zoom(by: number): void;
@@ -50,14 +50,18 @@ export interface Viewer {
 // Which contacts are tubes, as multiples of the mean force.
 const strong = 5;
 
-export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLElement, rendered: () => void): Promise<Viewer> {
+// `bounds`: what the view is laid out for.
+export async function makeViewer(scene: SceneData, load: LoadSection, bounds: Bounds, box: HTMLElement, rendered: () => void): Promise<Viewer> {
   const renderer = new WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
   const canvas = renderer.domElement;
   box.append(canvas);
-  const low = new Vector3(...(scene.low as [number, number, number])).multiplyScalar(mm);
-  const high = new Vector3(...(scene.high as [number, number, number])).multiplyScalar(mm);
+  const low = bounds.low.clone().multiplyScalar(mm);
+  const high = bounds.high.clone().multiplyScalar(mm);
   const centre = low.clone().add(high).multiplyScalar(0.5);
   const size = low.distanceTo(high);
+  // A round vessel is looked at from where the grain in question is near; a strip from its long side.
+  const round = (scene.walls ?? []).some((wall) => wall.role === 'vessel' && wall.kind === 'cylinder');
+  const standard = new Vector3(-0.55, -1, 0.62).normalize();
   const world = new Scene();
   const camera = new PerspectiveCamera(32, 2, size / 200, size * 20);
   camera.up.set(0, 0, 1);
@@ -74,7 +78,7 @@ export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLE
     world.add(after);
   });
   world.add(tubes.mesh());
-  const walls: Walls = await makeWalls(scene, load);
+  const walls: Walls = await makeWalls(scene, load, bounds);
   world.add(walls.group);
 
   let shown: Shown | null = null;
@@ -105,7 +109,7 @@ export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLE
   const reset = (): void => {
     controls.target.copy(centre);
     const distance = (0.5 * size) / Math.tan((camera.fov * Math.PI) / 360) / Math.min(1, camera.aspect * 0.8);
-    camera.position.copy(centre).add(new Vector3(-0.55, -1, 0.62).normalize().multiplyScalar(distance));
+    camera.position.copy(centre).addScaledVector(standard, distance);
     controls.update();
     draw();
   };
@@ -214,7 +218,7 @@ export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLE
       fill();
     },
     face(row) {
-      if (!shown) return;
+      if (!shown || !round) return;
       const arm = camera.position.clone().sub(controls.target);
       const out = new Vector3(mm * shown.frame.x[row]! - centre.x, mm * shown.frame.y[row]! - centre.y, 0);
       if (out.lengthSq() > 1e-6) camera.position.copy(controls.target).add(arm.applyAxisAngle(new Vector3(0, 0, 1), Math.atan2(out.y, out.x) + 0.5 - Math.atan2(arm.y, arm.x)));
@@ -226,9 +230,8 @@ export async function makeViewer(scene: SceneData, load: LoadSection, box: HTMLE
       const f = shown.frame;
       const grain = new Vector3(mm * f.x[row]!, mm * f.y[row]!, mm * f.z[row]!);
       const out = new Vector3(grain.x - centre.x, grain.y - centre.y, 0);
-      if (out.lengthSq() < 1e-6) out.set(-0.5, -1, 0);
       // From outside and above, a little to the side: blade, grain and wall are then beside each other.
-      const from = out.normalize().applyAxisAngle(new Vector3(0, 0, 1), 0.5).add(new Vector3(0, 0, 0.75)).normalize();
+      const from = round && out.lengthSq() > 1e-6 ? out.normalize().applyAxisAngle(new Vector3(0, 0, 1), 0.5).add(new Vector3(0, 0, 0.75)).normalize() : standard;
       controls.target.copy(grain);
       camera.position.copy(grain).addScaledVector(from, Math.min(34 * mm * f.radius[row]!, size));
       controls.update();
