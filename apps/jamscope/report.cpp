@@ -142,6 +142,7 @@ json series_json(const jam::RunInfo& info, const jam::Series& series, std::size_
                        bins, Keep::last, [&](std::size_t r) { return series.time[r]; }, 10)},
           {"largest_force", column(bins, Keep::high, series.largest_compressive_force)},
           {"jammed", column(bins, Keep::high, series.jammed_count)},
+          {"watch_force", number(info.watch_force > 0 && info.watch_radius == 0 ? info.watch_force : nan)},
           {"kinetic_energy", column(bins, Keep::high, series.kinetic_energy)},
           {"largest_overlap", column(bins, Keep::high, series.largest_overlap)},
           {"blades", blades}};

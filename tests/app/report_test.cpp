@@ -261,6 +261,14 @@ TEST(Report, TakesTheLargestForceFromTheSeriesBecauseItSawEveryStep) {
   EXPECT_EQ(data(foreign_run())["headline"]["largest_force_source"], "frames");
 }
 
+TEST(Report, SaysAboveWhichForceTheRunCountedItsGrains) {
+  Record r = made_up_run();
+  r.info.watch_force = 12;
+  EXPECT_EQ(data(r)["series"]["watch_force"], 12);
+  r.info.watch_radius = 5e-4;  // of each grain another
+  EXPECT_TRUE(data(r)["series"]["watch_force"].is_null());
+}
+
 TEST(Report, WritesASeedTooLargeForJavaScriptAsText) {
   EXPECT_EQ(data(made_up_run())["run"]["seed"], "18446744073709551615");
 }

@@ -92,7 +92,7 @@ export function drawCard(figure: Figure, runs: readonly ReportData[], view: Time
   fill(spec, figure.title);
   if (spec.kind !== 'missing') {
     tools.append(el('button', { type: 'button', title: 'Save the numbers of this figure', click: () => saveText(`${figure.id}.csv`, viewCsv(spec)) }, 'CSV'));
-    box.append(el('p', { class: 'caption' }, figure.caption(runs[0]!)));
+    box.append(el('p', { class: 'caption' }, figure.caption(runs[0]!, runs.length > 1)));
   }
   return { figure, box, redraw: () => redraws.forEach((redraw) => redraw()) };
 }

@@ -14,6 +14,7 @@ export interface BladeData {
 }
 export interface SeriesData {
   rows: number; every: number; window: number | null; time: Column;
+  watch_force: number | null; // N, `jammed` counts grains above it
   largest_force: Column; jammed: Column; kinetic_energy: Column; largest_overlap: Column;
   blades: BladeData[];
 }

@@ -124,9 +124,10 @@ function draw(all: readonly ReportData[], page: HTMLElement): void {
   const whole = button('Whole record', 'Show the whole record (double click in a plot)', () => view.reset());
   const earlier = button('‹ Event', 'Show the event before', () => step(-1));
   const later = button('Event ›', 'Show the next event', () => step(1));
+  const hint = el('span', { class: 'hint' });
   const bar = el('div', { class: 'bar-tools', role: 'toolbar', 'aria-label': 'Time shown in the plots' },
     shown, whole, earlier, later, el('a', { href: '#scene' }, '3D view'), el('a', { href: '#events' }, 'Event list'),
-    el('span', { class: 'hint' }, 'Drag in a plot to zoom, double click to reset, click a shaded jam to choose it.'));
+    hint);
   const tell = (): void => {
     const { low, high } = view.range();
     if (!view.marked()) current = null;
@@ -134,6 +135,7 @@ function draw(all: readonly ReportData[], page: HTMLElement): void {
     shown.textContent = `${instant(low, digits)} s … ${instant(high, digits)} s${current ? `, event ${current.number}` : ''}`;
     whole.disabled = low <= view.full.low && high >= view.full.high;
     earlier.hidden = later.hidden = run().events.length === 0;
+    hint.textContent = `Drag in a plot to zoom, double click to reset${view.events.length > 0 ? ', click a shaded jam to choose it' : ''}.`;
     shownEvents?.mark(current);
   };
   view.listen(tell);

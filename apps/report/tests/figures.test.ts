@@ -12,8 +12,8 @@ const figures = groups.flatMap((group) => group.figures);
 describe.each(figures.map((f) => [f.id, f] as const))('figure %s', (_id, figure) => {
   test('has a title, a caption and a name of its own', () => {
     expect(figure.title).not.toBe('');
-    expect(figure.caption(jammed())).not.toBe('');
-    expect(figure.caption(jammed())).not.toMatch(/NaN|undefined|null|–\s*window/);
+    expect(figure.caption(jammed(), false)).not.toBe('');
+    expect(figure.caption(jammed(), false)).not.toMatch(/NaN|undefined|null|–\s*window/);
     expect(figures.filter((f) => f.id === figure.id)).toHaveLength(1);
   });
   test('shows a record with jams', () => {
@@ -29,7 +29,7 @@ describe.each(figures.map((f) => [f.id, f] as const))('figure %s', (_id, figure)
     const empty = { ...bare(), jammed_histogram: [], survival_classes: [], frames: { ...bare().frames, rows: 0, time: [], largest_force: [], mean_force: [], jammed: [], bridges: [] } };
     for (const data of [quiet(), bare(), empty]) {
       const view = figure.view(data);
-      figure.caption(data);
+      figure.caption(data, true);
       if (view.kind === 'missing') expect(view.why).toMatch(/\.$/);
       if (view.kind === 'time') expect(view.curves.some((c) => c.values.some((v) => v !== null))).toBe(true);
       if (view.kind === 'bars') expect(view.bars.some((b) => b.value > 0)).toBe(true);

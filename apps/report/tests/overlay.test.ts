@@ -34,6 +34,31 @@ test('each run has a colour of its own', () => {
   expect(view.curves.map((c) => [c.label, c.colour])).toEqual([['A: Flow energy', 'blue'], ['B: Flow energy', 'vermillion']]);
 });
 
+test('curves of one run have strokes of their own; what is dashed of one run stays so', () => {
+  const view = viewOf(figures.find((f) => f.id === 'grain-force')!, two) as TimePlot;
+  expect(view.curves.filter((c) => c.colour === 'blue').map((c) => [c.label, c.stroke])).toEqual([
+    ['A: largest in any step', 'dashes'], ['A: largest in the frame', undefined], ['A: mean of the frame', 'dots']]);
+});
+
+test('survival curves of several runs are of the same stream, with their bands', () => {
+  const { global: _none, ...without } = jammed().steps;
+  const view = viewOf(survivalCurve, [two[0]!, { ...two[1]!, steps: without }]) as TimePlot;
+  expect(view.curves.map((c) => [c.label.split(/[ ,]+/)[1], c.kind])).toEqual([['particle', 'high'], ['particle', 'low'], ['particle', 'steps'], ['particle', 'high'], ['particle', 'low'], ['particle', 'steps']]);
+});
+
+test('plots of more curves than there are strokes stand one below the other', () => {
+  const ledger = { ...jammed().energy!, curves: ['a', 'b', 'c', 'd'].map((name) => ({ name, values: [1, 2, 3] })) };
+  const view = viewOf(energyLedger, two.map((run) => ({ ...run, energy: ledger })));
+  expect(view.kind).toBe('several');
+});
+
+test('a run is said to count above the force that it watched, whatever the threshold', () => {
+  const figure = figures.find((f) => f.id === 'jammed-count')!;
+  const data = { ...jammed(), criteria: { ...jammed().criteria, jam_force: 50 } };
+  expect((figure.view(data) as TimePlot).curves[0]!.label).toBe('above 20 N in any step');
+  expect(figure.caption(data, false)).toMatch(/above 50 N in each frame.*above 20 N in any step/);
+});
+
 test('survival curves begin at one and have their band', () => {
   const view = survivalCurve.view(jammed()) as TimePlot;
   expect(view.across?.quantity).toBe('Duration');
@@ -54,7 +79,7 @@ test('the ledger leaves out what is negligible but never what is unexplained', (
 
 test('a metric is drawn with its own words', () => {
   const figure = metricFigure('coordination');
-  expect(figure.caption(jammed())).toMatch(/^Contacts per grain\. Named coordination/);
+  expect(figure.caption(jammed(), false)).toMatch(/^Contacts per grain\. Named coordination/);
   expect(figure.view(bare()).kind).toBe('missing');
 });
 

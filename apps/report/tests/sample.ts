@@ -44,7 +44,7 @@ export function jammed(): ReportData {
       coordination: [4, 4, 4, 4, 4, 4], coordination_with_walls: [4.2, 4.2, 4.2, 4.2, 4.2, 4.2],
     },
     series: {
-      rows: 3, every: 1, window: 0.004, time: [0.004, 0.008, 0.012], largest_force: [45, 130, 2], jammed: [2, 2, 0],
+      rows: 3, every: 1, window: 0.004, watch_force: 20, time: [0.004, 0.008, 0.012], largest_force: [45, 130, 2], jammed: [2, 2, 0],
       kinetic_energy: [1e-5, 1e-5, 1e-5], largest_overlap: [0.01, 0.02, 0.001],
       blades: [{ name: 'blade', force_mean: [1, 5, 2], force_low: [0, 1, 1], force_high: [3, 40, 3], torque_mean: [0.1, 0.2, 0.1], torque_low: [0, 0, 0], torque_high: [0.2, 2, 0.2] }],
     },

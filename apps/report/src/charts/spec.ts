@@ -3,13 +3,16 @@ import type { Column } from '../data';
 
 export type Colour = 'blue' | 'vermillion' | 'green' | 'orange' | 'purple' | 'grey';
 
+export type Stroke = 'dashes' | 'dots';
+
 // One curve, over time unless the plot says otherwise. `low` and `high` are the edges of a band; a band belongs to the curves of its own colour.
 export interface Curve {
   label: string;
   time: Column;    // or what the plot is over
   values: Column;
   colour: Colour;
-  kind?: 'line' | 'steps' | 'dashes' | 'low' | 'high';
+  kind?: 'line' | 'steps' | 'low' | 'high';
+  stroke?: Stroke; // solid unless it says otherwise
 }
 
 export interface TimePlot {

@@ -55,7 +55,7 @@ function series(curve: Curve, spec: TimePlot): uPlot.Series {
     label: curve.label,
     stroke: () => colour(edge ? `${curve.colour}-band` : curve.colour),
     width: edge ? 0.75 : 1.5,
-    dash: curve.kind === 'dashes' ? [6, 4] : undefined,
+    dash: curve.stroke && { dashes: [6, 4], dots: [1.5, 3] }[curve.stroke],
     class: edge && spec.across ? 'edge' : undefined,
     paths: curve.kind === 'steps' || (edge && spec.across) ? uPlot.paths.stepped!({ align: 1 }) : undefined,
     points: edge ? { show: false } : undefined,
@@ -188,7 +188,7 @@ function options(spec: TimePlot, log: boolean, logAcross: boolean, width: number
       ...spec.curves.map((curve) => series(curve, spec)),
     ],
     bands: bands(spec.curves),
-    legend: { live: true, markers: { width: 2, dash: (_plot, k) => (spec.curves[k - 1]?.kind === 'dashes' ? 'dashed' : 'solid') } },
+    legend: { live: true, markers: { width: 2, dash: (_plot, k) => ({ dashes: 'dashed', dots: 'dotted', solid: 'solid' })[spec.curves[k - 1]?.stroke ?? 'solid'] } },
     cursor: {
       y: false,
       ...(across ? {} : { sync: { key: 'time', scales: ['x', null] as [string, null], setSeries: false, filters: { pub: (type: string) => type === 'mousemove' || type === 'mouseleave' } } }),

@@ -168,7 +168,7 @@ export const energyLedger: Figure = {
     return {
       kind: 'time', quantity: 'Energy', unit: 'J',
       curves: shown.map((c, k): Curve => ({
-        label: c.name, time: energy.time, values: c.values, colour: ledgerHues[k % ledgerHues.length]!, kind: k < ledgerHues.length ? 'line' : 'dashes',
+        label: c.name, time: energy.time, values: c.values, colour: ledgerHues[k % ledgerHues.length]!, stroke: k < ledgerHues.length ? undefined : 'dashes',
       })),
     };
   },

@@ -2,6 +2,7 @@
 import type { Curve } from '../charts/spec';
 import { missing } from '../charts/spec';
 import { known, setting, withUnit } from '../numbers/format';
+import type { ReportData } from '../data';
 import type { Figure } from './figure';
 
 export const compressiveForce: Figure = {
@@ -9,19 +10,19 @@ export const compressiveForce: Figure = {
   title: 'Compressive force on the grains',
   paper: 'Fig. 5',
   counts: true,
-  caption: (data) => {
+  caption: (data, several) => {
     const thinned = data.frames.every > 1 ? ` ${data.frames.every} frames are joined into one point: largest of the largest, mean of the means.` : '';
     const series = data.series?.largest_force.length
       ? ' Dashed: largest force in any step between the frames.'
       : ' Peaks between two frames are not seen in this data.';
     return `Largest and mean over all grains in each frame.${series} A grain above ${setting(data.criteria.jam_force, 'N')} counts as jammed.` +
-      `${data.headline.events > 0 ? ' Shaded: jam events.' : ''}${thinned}`;
+      `${data.headline.events > 0 && !several ? ' Shaded: jam events.' : ''}${thinned}`;
   },
   view: (data) => {
     const { frames, series, criteria } = data;
     const curves: Curve[] = [];
     if (series && series.largest_force.some(known))
-      curves.push({ label: 'largest in any step', time: series.time, values: series.largest_force, colour: 'orange', kind: 'dashes' });
+      curves.push({ label: 'largest in any step', time: series.time, values: series.largest_force, colour: 'orange', stroke: 'dashes' });
     if (frames.largest_force.some(known))
       curves.push({ label: 'largest in the frame', time: frames.time, values: frames.largest_force, colour: 'vermillion' });
     if (frames.mean_force.some(known))
@@ -35,6 +36,9 @@ export const compressiveForce: Figure = {
   },
 };
 
+// A run counts its grains above the force that it watched, whatever the threshold of the analysis.
+const watchedForce = (data: ReportData): string => (known(data.series?.watch_force) ? setting(data.series.watch_force, 'N') : 'what the run watched');
+
 export const jammedCount: Figure = {
   id: 'jammed-count',
   title: 'Jammed grains and bridges',
@@ -42,7 +46,7 @@ export const jammedCount: Figure = {
   counts: true,
   caption: (data) => {
     const window = data.series?.jammed.length && known(data.series.window)
-      ? ` Dashed: most grains above the threshold in any step of a ${withUnit(data.series.window * data.series.every, 's')} window.`
+      ? ` Dashed: most grains above ${watchedForce(data)} in any step of a ${withUnit(data.series.window * data.series.every, 's')} window.`
       : '';
     return `Grains above ${setting(data.criteria.jam_force, 'N')} in each frame, and clusters that carry force from a blade to the vessel.${window}`;
   },
@@ -51,7 +55,7 @@ export const jammedCount: Figure = {
     if (frames.rows === 0) return missing('The record holds no frames.');
     const curves: Curve[] = [];
     if (series && series.jammed.length > 0)
-      curves.push({ label: 'jammed in any step', time: series.time, values: series.jammed, colour: 'orange', kind: 'dashes' });
+      curves.push({ label: `above ${watchedForce(data)} in any step`, time: series.time, values: series.jammed, colour: 'orange', stroke: 'dashes' });
     curves.push(
       { label: 'jammed grains', time: frames.time, values: frames.jammed, colour: 'vermillion', kind: 'steps' });
     if (frames.bridges.some(known)) curves.push({ label: 'bridges', time: frames.time, values: frames.bridges, colour: 'blue', kind: 'steps' });

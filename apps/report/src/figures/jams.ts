@@ -79,11 +79,11 @@ export const jammedHistogram: Figure = {
   title: 'Number of grains jammed at once',
   paper: 'Fig. 12',
   counts: true,
-  caption: (data) => {
+  caption: (data, several) => {
     const none = data.jammed_histogram[0] ?? 0;
     const all = data.jammed_histogram.reduce((a, b) => a + b, 0);
     return `Frames by the number of grains above ${setting(data.criteria.jam_force, 'N')}` +
-      (all > 0 ? `; ${count(none)} of ${count(all)} frames (${percent(none / all)}) have none and are left out.` : '.');
+      (all > 0 && !several ? `; ${count(none)} of ${count(all)} frames (${percent(none / all)}) have none and are left out.` : '.');
   },
   view: (data) => {
     const all = data.jammed_histogram;

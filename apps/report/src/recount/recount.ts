@@ -38,7 +38,6 @@ export function recounted(data: ReportData, known: Recountable, threshold: numbe
         ? { events: steps.global.events, grains: steps.particle.events, median: steps.global.median.value, longest: steps.global.longest } : null,
     },
     frames: { ...data.frames, jammed: binned(c.jammed, every), jammed_in_gap: binned(c.jammedInGap, every), bridges: data.frames.bridges.map(() => null) },
-    series: data.series ? { ...data.series, jammed: [] } : null,
     events: c.events, tracks: c.tracks, cluster_events: [], steps, survival_classes: c.classes, jammed_histogram: c.histogram,
   };
 }

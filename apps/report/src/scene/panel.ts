@@ -8,6 +8,7 @@ import { jammedIn, type Samples } from '../recount/samples';
 import { clustersOf, clustersOfAnalysis, type Clusters } from './clusters';
 import { forceRange, rangeOf, viridis, type Range } from './colours';
 import { boundsOf, decodeFrame, decodeGrains, frameFor, rowOf, type Frame, type Grains } from './frame';
+import { hasShape } from './walls';
 import { makeViewer, type Blade, type Chains, type ColourBy, type Look, type Viewer } from './viewer';
 
 // What can be shown: a jam of a grain.
@@ -66,7 +67,11 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
 
   const load = sectionsOfRun(run);
   const frames = scene.frames;
-  const roles = (scene.walls ?? []).map((w) => w.role);
+  const walls = scene.walls ?? [];
+  const roles = walls.map((w) => w.role);
+  const shapeless = walls.filter((w) => !hasShape(w) && !w.left_out).map((w) => w.name);
+  const hasBlade = walls.some((w) => w.role === 'blade' && hasShape(w));
+  const hasVessel = walls.some((w) => w.role !== 'blade' && hasShape(w));
   const decimalsOf = data.headline.sampling_interval ?? 1e-4;
   let threshold = data.criteria.jam_force;
   let loaded: Samples | null = null;
@@ -128,7 +133,8 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     const key = (cls: string, text: string): HTMLElement => el('div', { class: 'key' }, el('span', { class: `mark ${cls}` }), text);
     legend.replaceChildren(...[
       el('h3', {}, title),
-      ...(look.by === 'cluster' ? [el('p', { class: 'caption' }, 'One colour for each cluster; grains that are not jammed are grey.')] : [bar, ends]),
+      ...(look.by === 'cluster' ? [el('p', { class: 'caption' }, 'One colour for each cluster; grains that are not jammed are grey.')]
+        : look.by === 'speed' && !current?.frame.speed.some(Number.isFinite) ? [el('p', { class: 'caption' }, 'Speeds are not known from this data; all grains are grey.')] : [bar, ends]),
       key('ring', data.samples?.by_force === false ? 'jammed, by the criterion of the analysis' : `jammed: above ${withUnit(threshold, 'N')}`),
       key('ring chosen', 'chosen grain'),
       ...(look.chains === 'none' || !viewer || viewer.thickest() === 0 ? [] : [
@@ -227,8 +233,8 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     select<'1' | '0.4' | '0'>('Grains', [['1', 'full size'], ['0.4', 'small'], ['0', 'jammed only']], '1', (v) => { look.bulk = Number(v); refresh(); }),
     select<Chains>('Force chains', [['mean', 'above the mean'], ['strong', 'above 5 × the mean'], ['bridges', 'bridging clusters'], ['none', 'none']], look.chains, (v) => { look.chains = v; refresh(); }),
     tick('Cut away', look.cut, (v) => { look.cut = v; refresh(); }),
-    tick('Vessel', look.vessel, (v) => { look.vessel = v; refresh(); }),
-    bladeChoice);
+    hasVessel && tick('Vessel', look.vessel, (v) => { look.vessel = v; refresh(); }),
+    hasBlade && bladeChoice);
   const fine = frames.filter((f) => f.fine).length;
   const whole = (frames.length - fine === scene.all_frames ? 'All frames of the record are here'
     : `${count(frames.length - fine)} of ${count(scene.all_frames)} frames are here: those of jams, strongest first, then some spread evenly`) +
@@ -238,12 +244,13 @@ export function drawScene(data: ReportData, run: number, samples: Promise<Sample
     el('div', { class: 'scene-body' }, stage, el('aside', {}, legend, record)),
     el('div', { class: 'transport' }, play,
       el('button', { type: 'button', 'aria-label': 'Frame before', click: () => step(-1) }, '‹'), slider,
-      el('button', { type: 'button', 'aria-label': 'Next frame', click: () => step(1) }, '›'), note,
-      el('button', { type: 'button', click: () => viewer?.reset() }, 'Reset view')),
-    ...(scene.walls ?? []).filter((w) => w.left_out).map((w) => el('p', { class: 'caption' }, `The wall ${w.name} is not drawn: ${w.left_out}.`)),
+      el('button', { type: 'button', 'aria-label': 'Next frame', click: () => step(1) }, '›'),
+      el('button', { type: 'button', click: () => viewer?.reset() }, 'Reset view')), note,
+    ...walls.filter((w) => w.left_out).map((w) => el('p', { class: 'caption' }, `The wall ${w.name} is not drawn: ${w.left_out}.`)),
+    ...(shapeless.length > 0 ? [el('p', { class: 'caption' }, `The data do not hold the shape of ${shapeless.join(', ')}: not drawn.`)] : []),
     el('p', { class: 'caption' }, `${whole}. Drag to turn, wheel to zoom, right button to move, click a grain for its record. With the view in focus: arrow keys turn, + and − zoom, ` +
-      'comma and full stop change the frame, space plays, R resets.' +
-      (roles.includes('vessel') ? ' The near side of the vessel is cut away; so is the near half of the bed, except for jammed grains.' : '')));
+      'comma and full stop change the frame, space plays, R resets. ' +
+      (hasVessel ? 'The near side of the vessel is cut away; so is the near half of the bed, except for jammed grains.' : 'The near half of the bed is cut away, except for jammed grains.')));
 
   stage.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !viewer) return;

@@ -36,7 +36,7 @@ export interface Viewer {
   resize(): void;
   recolour(): void;
   reset(): void;
-  face(row: number): void;   // the whole; in a round vessel with this grain on the near side
+  face(row: number): void;   // the whole; unless it is a strip with this grain on the near side
   lookAt(row: number): void; // close up
   turn(right: number, up: number): void;
   zoom(by: number): void;
@@ -59,8 +59,9 @@ export async function makeViewer(scene: SceneData, load: LoadSection, bounds: Bo
   const high = bounds.high.clone().multiplyScalar(mm);
   const centre = low.clone().add(high).multiplyScalar(0.5);
   const size = low.distanceTo(high);
-  // A round vessel is looked at from where the grain in question is near; a strip from its long side.
-  const round = (scene.walls ?? []).some((wall) => wall.role === 'vessel' && wall.kind === 'cylinder');
+  // What is about as long as wide is looked at from where the grain in question is near; a strip from its long side.
+  const [long, wide] = [high.x - low.x, high.y - low.y].sort((a, b) => b - a) as [number, number];
+  const strip = long > 1.5 * wide;
   const standard = new Vector3(-0.55, -1, 0.62).normalize();
   const world = new Scene();
   const camera = new PerspectiveCamera(32, 2, size / 200, size * 20);
@@ -218,7 +219,7 @@ export async function makeViewer(scene: SceneData, load: LoadSection, bounds: Bo
       fill();
     },
     face(row) {
-      if (!shown || !round) return;
+      if (!shown || strip) return;
       const arm = camera.position.clone().sub(controls.target);
       const out = new Vector3(mm * shown.frame.x[row]! - centre.x, mm * shown.frame.y[row]! - centre.y, 0);
       if (out.lengthSq() > 1e-6) camera.position.copy(controls.target).add(arm.applyAxisAngle(new Vector3(0, 0, 1), Math.atan2(out.y, out.x) + 0.5 - Math.atan2(arm.y, arm.x)));
@@ -231,7 +232,7 @@ export async function makeViewer(scene: SceneData, load: LoadSection, bounds: Bo
       const grain = new Vector3(mm * f.x[row]!, mm * f.y[row]!, mm * f.z[row]!);
       const out = new Vector3(grain.x - centre.x, grain.y - centre.y, 0);
       // From outside and above, a little to the side: blade, grain and wall are then beside each other.
-      const from = round && out.lengthSq() > 1e-6 ? out.normalize().applyAxisAngle(new Vector3(0, 0, 1), 0.5).add(new Vector3(0, 0, 0.75)).normalize() : standard;
+      const from = !strip && out.lengthSq() > 1e-6 ? out.normalize().applyAxisAngle(new Vector3(0, 0, 1), 0.5).add(new Vector3(0, 0, 0.75)).normalize() : standard;
       controls.target.copy(grain);
       camera.position.copy(grain).addScaledVector(from, Math.min(34 * mm * f.radius[row]!, size));
       controls.update();

@@ -104,6 +104,9 @@ interface Body {
   spheres: Spheres | null; count: number; // of glued grains
 }
 
+// Whether there is something to draw of a wall: foreign data may know no more than its name.
+export const hasShape = (wall: SceneWall): boolean => wall.section !== undefined || ['plane', 'cylinder', 'cone', 'disc'].includes(wall.kind);
+
 export interface Walls {
   group: Group;
   place(poses: readonly number[][]): void;

@@ -67,7 +67,7 @@ export function drawTimeline(data: ReportData, view: TimeView, choose: (moment: 
     return box;
   }
   const plot = el('div', { class: 'timeline', tabindex: 0, role: 'group', 'aria-label': 'Jams over time. Left and right choose the jam before and after, in the order of time.' });
-  box.append(plot, el('p', { class: 'caption' }, 'Each bar is a jam; the stronger, the darker. Click one to see it in the 3D view. The streams count the same jams in different ways and are never mixed: ' +
+  box.append(plot, el('p', { class: 'caption' }, 'Each bar is a jam; the stronger, the fuller its colour. Click one to see it in the 3D view. The streams count the same jams in different ways and are never mixed: ' +
     'a jam that one grain hands to the next is one global jam and two of particles. The stretch of time is that of the plots below.'));
   const inOrder = all.flatMap((band) => band.lanes.flat()).sort((a, b) => a.start - b.start);
   let current: Item | null = null;
