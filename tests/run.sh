@@ -46,6 +46,12 @@ check "all" -LE -DJAMSCOPE_BUILD_DEM=ON -DJAMSCOPE_BUILD_JAM=ON
 echo "== report page"
 if command -v npm >/dev/null && node -e 'const [a, b] = process.versions.node.split(".").map(Number); process.exit(a > 20 || (a === 20 && b >= 19) ? 0 : 1)'; then
   (cd apps/report && npm ci --no-audit --no-fund && npm test && npm run check-bundle)
+  # The page in a browser, where there is Debian's Chromium.
+  if chromium=$(command -v chromium); then
+    apps/report/tests/browser/check.sh "$folder/jamscope" "$chromium"
+  else
+    echo "browser test left out: chromium is not installed"
+  fi
 else
   echo "left out: npm with Node 20.19 or newer is not installed"
 fi
