@@ -22,16 +22,22 @@ struct Close {
   }
 };
 
-// Shuffle stores the first bytes of all elements, then the second bytes, and so on.
+// Shuffle stores the first bytes of all elements, then the second bytes, and so on: of elements whose bytes are rows, the transpose.
+enum class Shuffle : bool { back, forth };
 template <std::size_t size>
-void unshuffle(const unsigned char* from, std::size_t elements, unsigned char* to) {
-  for (std::size_t k = 0; k < elements; ++k)
-    for (std::size_t byte = 0; byte < size; ++byte) to[k * size + byte] = from[byte * elements + k];
+void turn(Shuffle way, const unsigned char* from, std::size_t elements, unsigned char* to) {
+  if (way == Shuffle::forth) {
+    for (std::size_t byte = 0; byte < size; ++byte)
+      for (std::size_t k = 0; k < elements; ++k) to[byte * elements + k] = from[k * size + byte];
+  } else {
+    for (std::size_t k = 0; k < elements; ++k)
+      for (std::size_t byte = 0; byte < size; ++byte) to[k * size + byte] = from[byte * elements + k];
+  }
 }
-void unshuffle(std::size_t size, const unsigned char* from, std::size_t bytes, unsigned char* to) {
+void turn(Shuffle way, std::size_t size, const unsigned char* from, std::size_t bytes, unsigned char* to) {
   switch (size) {
-    case 4: return unshuffle<4>(from, bytes / 4, to);
-    case 8: return unshuffle<8>(from, bytes / 8, to);
+    case 4: return turn<4>(way, from, bytes / 4, to);
+    case 8: return turn<8>(way, from, bytes / 8, to);
     default: std::memcpy(to, from, bytes);
   }
 }
@@ -46,19 +52,6 @@ std::size_t shuffled_size(hid_t plan) {
   const std::size_t size = values[0];
   count = values.size();
   return H5Pget_filter2(plan, 1, &flags, &count, values.data(), 0, nullptr, &config) == H5Z_FILTER_DEFLATE ? size : 0;
-}
-
-template <std::size_t size>
-void shuffle(const unsigned char* from, std::size_t elements, unsigned char* to) {
-  for (std::size_t byte = 0; byte < size; ++byte)
-    for (std::size_t k = 0; k < elements; ++k) to[byte * elements + k] = from[k * size + byte];
-}
-void shuffle(std::size_t size, const unsigned char* from, std::size_t bytes, unsigned char* to) {
-  switch (size) {
-    case 4: return shuffle<4>(from, bytes / 4, to);
-    case 8: return shuffle<8>(from, bytes / 8, to);
-    default: std::memcpy(to, from, bytes);
-  }
 }
 
 // A dataset that is stored as this file knows how.
@@ -157,11 +150,11 @@ bool read_deflated_rows(hid_t dataset, hid_t memory, std::uint64_t start, std::u
     if (libdeflate_zlib_decompress(inflate.get(), packed.data(), packed.size(), shuffled.data(), chunk_bytes, nullptr) != LIBDEFLATE_SUCCESS) return false;
     const std::uint64_t begin = std::max(first, start), end = std::min(first + chunk, start + count);
     if (begin == first && end == first + chunk) {
-      unshuffle(plain->element, shuffled.data(), chunk_bytes, to + (begin - start) * row);
+      turn(Shuffle::back, plain->element, shuffled.data(), chunk_bytes, to + (begin - start) * row);
       continue;
     }
     whole.resize(chunk_bytes);
-    unshuffle(plain->element, shuffled.data(), chunk_bytes, whole.data());
+    turn(Shuffle::back, plain->element, shuffled.data(), chunk_bytes, whole.data());
     std::memcpy(to + (begin - start) * row, whole.data() + (begin - first) * row, std::size_t(end - begin) * row);
   }
   return true;
@@ -179,7 +172,7 @@ bool write_deflated_rows(hid_t dataset, hid_t memory, std::uint64_t rows_before,
     const std::size_t bytes = std::size_t(std::min(plain->chunk_rows, count - done)) * plain->row_bytes;
     std::memcpy(whole.data(), from + done * plain->row_bytes, bytes);
     std::fill(whole.begin() + std::ptrdiff_t(bytes), whole.end(), std::uint8_t{0});
-    shuffle(plain->element, whole.data(), whole.size(), shuffled.data());
+    turn(Shuffle::forth, plain->element, whole.data(), whole.size(), shuffled.data());
     const std::vector<unsigned char>& stream = packer.pack(shuffled.data(), shuffled.size(), plain->element);
     const std::array<hsize_t, 2> offset{start + done, 0};
     if (H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, offset.data(), stream.size(), stream.data()) < 0) return false;

@@ -36,7 +36,7 @@ export interface Viewer {
   resize(): void;
   recolour(): void;
   reset(): void;
-  face(row: number): void;   // the whole; unless it is a strip with this grain on the near side
+  face(row: number): void;   // the whole, with this grain on the near side unless the whole is a strip
   lookAt(row: number): void; // close up
   turn(right: number, up: number): void;
   zoom(by: number): void;
