@@ -24,6 +24,8 @@ std::string rule_text(const jam::Criteria& criteria) {
   return fmt::format(" by {} above {:g} E* R^2", criterion.name, jam::threshold_of(criteria));
 }
 
+std::string jams(std::size_t count) { return fmt::format("{} jam{}", count, count == 1 ? "" : "s"); }
+
 }  // namespace
 
 std::string result_text(const jam::Analysis& a) {
@@ -39,8 +41,8 @@ std::string result_text(const jam::Analysis& a) {
     text += fmt::format("no jams{}\n", rule);
   } else {
     text +=
-        fmt::format("{} jams{}: {:.3g} a second, {:.3g} ms long on average, {:.3g} % of the time\n",
-                    a.events.size(), rule, a.jam_frequency,
+        fmt::format("{}{}: {:.3g} a second, {:.3g} ms long on average, {:.3g} % of the time\n",
+                    jams(a.events.size()), rule, a.jam_frequency,
                     1e3 * a.jammed_time / static_cast<double>(a.events.size()), 100 * a.jammed_time / a.observed_time);
     if (std::isfinite(a.jammed_in_gap_share))
       text += fmt::format("{:.3g} % of the jammed grains sat in the gap\n", 100 * a.jammed_in_gap_share);
@@ -52,8 +54,8 @@ std::string result_text(const jam::Analysis& a) {
       text += fmt::format("at every step: no jams{}\n", rule);
     } else {
       const std::string median = std::isfinite(s.median.value) ? fmt::format("half end within {:.3g} ms, ", 1e3 * s.median.value) : "";
-      text += fmt::format("at every step: {} jams ({} of single grains), {:.3g} a second (95 %: {:.3g} to {:.3g}), {}the longest lasts {:.3g} ms\n",
-                          global.jams.size(), a.every_step[1].jams.size(), s.rate.value, s.rate.low, s.rate.high, median, 1e3 * s.longest);
+      text += fmt::format("at every step: {} ({} of single grains), {:.3g} a second (95 %: {:.3g} to {:.3g}), {}the longest lasts {:.3g} ms\n",
+                          jams(global.jams.size()), a.every_step[1].jams.size(), s.rate.value, s.rate.low, s.rate.high, median, 1e3 * s.longest);
     }
   }
   if (a.flow_energy.source != "none")

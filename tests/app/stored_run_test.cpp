@@ -70,7 +70,7 @@ TEST(Analyze, FindsTheJamAndWritesAllResults) {
   write_sample(scratch / "run.h5");
   const Outcome outcome = run_program("analyze " + (scratch / "run.h5") + " -o " + (scratch / "jams"));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("1 jams above 10 N"));  // the threshold is that of the stored case
+  EXPECT_THAT(outcome.out, HasSubstr("1 jam above 10 N"));  // the threshold is that of the stored case
   for (const char* name : {"jam.h5", "events.csv", "summary.json", "report.html"})
     EXPECT_GT(std::filesystem::file_size(scratch / (std::string("jams/") + name)), 0u) << name;
   const auto summary = nlohmann::json::parse(text_of(scratch / "jams/summary.json"));
@@ -103,7 +103,7 @@ TEST(Analyze, CriteriaComeFromFileAndCommandLine) {
   std::ofstream(scratch / "c.toml") << "[analysis]\njam_force = \"1 N\"\n";
   const std::string run = "analyze " + (scratch / "run.h5");
   EXPECT_THAT(run_program(run + " -o " + (scratch / "a") + " --criteria " + (scratch / "c.toml")).out,
-              HasSubstr("1 jams above 1 N"));
+              HasSubstr("1 jam above 1 N"));
   EXPECT_THAT(run_program(run + " -o " + (scratch / "b") + " --set jam_force='100 N'").out,
               HasSubstr("no jams above 100 N"));
   const Outcome bad = run_program(run + " -o " + (scratch / "d") + " --set jam_forces='100 N'");
