@@ -120,7 +120,7 @@ struct Output {
 };
 
 // Of the levels at which contacts step (libdem/contact/levels.hpp).
-inline constexpr double default_accuracy = 0.15, most_accuracy = 0.5;
+inline constexpr double default_accuracy = 0.2, most_accuracy = 0.5;
 inline constexpr std::uint8_t most_levels = 10;
 
 struct Case {

@@ -252,6 +252,8 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   const auto [vx_j, vy_j, vz_j, inverse_j] = load_quads([&](std::size_t k) { return j(k).motion.data(); });
   const auto spin_i = load_quads([&](std::size_t k) { return i(k).spin.data(); });
   const auto spin_j = load_quads([&](std::size_t k) { return j(k).spin.data(); });
+  const auto arrival_i = load_quads([&](std::size_t k) { return i(k).arrival.data(); });
+  const auto arrival_j = load_quads([&](std::size_t k) { return j(k).arrival.data(); });
 
   LaneTouch r;
   PairConstants<Pack>& c = r.constants;
@@ -270,6 +272,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   touch.normal = branch * Pack(1.0 / distance);
   r.centres = {vx_i - vx_j, vy_i - vy_j, vz_i - vz_j};
   touch.velocity = r.centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
+  touch.closing = dot(Triple<Pack>{arrival_i[0] - arrival_j[0], arrival_i[1] - arrival_j[1], arrival_i[2] - arrival_j[2]}, touch.normal);
   r.inverse_smaller_radius = larger(inverse_i, inverse_j);
   return r;
 }
@@ -533,6 +536,8 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   const Triple<Pack> velocity{v_x, v_y, v_z};
   const Triple<Pack> wall_velocity = all_lanes(pose.velocity) + cross(touch.spin_j, lever);
   touch.velocity = velocity + cross(touch.spin_i, arm) - wall_velocity;
+  const auto arrival = load_quads([&](std::size_t k) { return grain(k).arrival.data(); });
+  touch.closing = dot(Triple<Pack>{arrival[0], arrival[1], arrival[2]} - wall_velocity, touch.normal);
 
   Springs<Pack> springs{gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->memory.spring; }),
                         gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->rolling; }),

@@ -82,7 +82,7 @@ ContactForce<Real> evaluate(const Law& law, const Touch<Real>& touch, const Pair
   f.normal = with_part<NormalLaws>(law.normal, [&](auto part) { return part.evaluate(touch.overlap, c); });
   const DampingCoefficients<Real> damping =
       with_part<DampingLaws>(law.damping, [&](auto part) { return part.evaluate(touch.overlap, f.normal, c); });
-  f.damping = damping.normal * dot(touch.velocity, touch.normal);
+  f.damping = damping.normal * touch.closing;
   const Real load = with_part<FrictionLimits>(law.friction, [&](auto part) { return part.load(f.normal); });
   f.tangential = with_part<TangentialLaws>(
       law.tangential, [&](auto part) { return part.evaluate(touch, c, f.normal, load, damping.tangential, springs, dt.length); });

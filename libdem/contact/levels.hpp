@@ -7,8 +7,8 @@
 //
 // h = 2^l steps. Of an elastic Hertz impact that overlap is d = (15 m* v^2 / (16 E* sqrt(R*)))^(2/5) (Johnson, Contact
 // Mechanics, section 11.4), so that in (2) omega^10 = (15/8)^5 (16 E* sqrt(R*) / (15 m*))^4 v^2. An impact takes 4.02/omega, and
-// around its peak the force is F (1 - (omega t)^2/2): seen every h, the largest one seen is at most (omega h)^2/8 below it, 0.3 %
-// for an accuracy of 0.15. The leapfrog scheme is stable for omega h < 2, omega of all contacts of a grain together: that is about
+// around its peak the force is F (1 - (omega t)^2/2): seen every h, the largest one seen is at most (omega h)^2/8 below it, 0.5 %
+// for an accuracy of 0.2. The leapfrog scheme is stable for omega h < 2, omega of all contacts of a grain together: that is about
 // three times the omega of one of them.
 #pragma once
 #include <algorithm>

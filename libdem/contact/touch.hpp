@@ -19,6 +19,10 @@ struct Touch {
   Triple<Real> velocity;  // m/s, of i's material point at the contact relative to j's
   Triple<Real> spin_i, spin_j;  // rad/s, of the two bodies; a wall is body j
   Real arm_i, arm_j;      // m, from the centres to the contact point; 0 for a wall
+  // m/s, at which the bodies near each other along the normal when they have this overlap. `velocity` is that of the leapfrog scheme,
+  // half a step earlier: it is what a spring has been stretched with since, but a damper that lags by half a step errs by a share
+  // of the step in the force.
+  Real closing;
 };
 
 // Constants of one contact: of the two materials, and of the two bodies. Roots are kept where the law would take them every time.

@@ -13,10 +13,11 @@ using Vec4 = Eigen::Matrix<double, 4, 1>;
 inline Vec4 quad(const Vec3& v, double fourth) { return {v.x(), v.y(), v.z(), fourth}; }
 
 // What moves a grain and where it is.
-struct GrainRow {
+struct alignas(64) GrainRow {
   Vec4 place = Vec4::Zero();   // m: centre, radius
   Vec4 motion = Vec4::Zero();  // m/s: velocity, half a step before the place; then 1/m: one over the radius
   Vec4 spin = Vec4::Zero();    // rad/s: angular velocity, likewise; then 0
+  Vec4 arrival = Vec4::Zero();  // m/s: velocity at the place if the acceleration has stayed what it was at the place before; then 0
   auto position() const { return place.head<3>(); }
   auto velocity() const { return motion.head<3>(); }
   auto angular_velocity() const { return spin.head<3>(); }

@@ -1,5 +1,7 @@
 #include "libdem/simulation/grain_store.hpp"
 
+#include <utility>
+
 namespace dem {
 
 GrainStore make_grain_store(Particles particles, const std::vector<Material>& materials) {
@@ -17,7 +19,7 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   const std::size_t n = grains.size();
   const Particles& p = grains.caller;
   grains.order = std::move(order);
-  grains.rows.assign(n + chunks_of(n), phantom());
+  const std::vector<GrainRow> rows_before = std::exchange(grains.rows, std::vector<GrainRow>(n + chunks_of(n), phantom()));
   grains.forces.assign(n + chunks_of(n), ForceRow{});
   grains.mass.resize(n);
   grains.inertia.resize(n);
@@ -33,7 +35,8 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   for (std::size_t r = 0; r < n; ++r) {
     const std::uint32_t i = grains.order[r];
     grains.row_of[i] = std::uint32_t(r);
-    grains.rows[r] = {quad(p.position[i], p.radius[i]), quad(p.velocity[i], 1 / p.radius[i]), quad(p.angular_velocity[i], 0)};
+    grains.rows[r] = {quad(p.position[i], p.radius[i]), quad(p.velocity[i], 1 / p.radius[i]), quad(p.angular_velocity[i], 0),
+                      rows_before.empty() ? quad(p.velocity[i], 0) : rows_before[row_before[i]].arrival};
     grains.mass[r] = grains.caller_mass[i];
     grains.inertia[r] = grains.caller_inertia[i];
     grains.material[r] = p.material[i];

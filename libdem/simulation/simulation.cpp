@@ -454,9 +454,11 @@ struct Simulation::Engine {
     motion.speed = motion.speed.cwiseMax(velocity.cwiseAbs());
     if constexpr (Levels) {
       grain.place += setup.step * stride(grains.level[i]) * velocity;
+      grain.arrival = velocity + 0.5 * three.cwiseProduct(faster);
       motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(setup.levels - grains.level[i])) * faster.cwiseAbs());
     } else {
       grain.place += setup.step * velocity;
+      grain.arrival = velocity + 0.5 * three.cwiseProduct(faster);
     }
   }
 

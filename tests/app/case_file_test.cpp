@@ -144,7 +144,7 @@ TEST(CaseFile, AnAutomaticStepFollowsFromTheContactsAndDividesEveryInterval) {
   for (const double interval : {c.duration, c.output.frame_interval, c.output.series_interval, c.output.checkpoint_interval})
     EXPECT_NEAR(interval / longest, std::round(interval / longest), 1e-6);
   // Half the accuracy number is half the steps, but for whole numbers.
-  const dem::Case fine = read_case_text(text, "case.toml", {"run.accuracy=0.075"}).physics;
+  const dem::Case fine = read_case_text(text, "case.toml", {"run.accuracy=0.1"}).physics;
   EXPECT_NEAR(dem::choose_steps(fine).stiffest, 0.5 * choice.stiffest, 1e-12 * choice.stiffest);
   EXPECT_LE(fine.step, 0.5 * choice.stiffest);
 

@@ -83,6 +83,7 @@ Touches make_touches(std::size_t packs) {
     touch.spin_i = vector(50);
     touch.spin_j = vector(50);
     touch.arm_i = touch.arm_j = radius;
+    touch.closing = dot(touch.velocity, touch.normal);
     t.touch.push_back(touch);
     t.springs.push_back({vector(1e-8), {0.0, 0.0, 0.0}, number(1e-6, 1e-5)});
   }
@@ -103,7 +104,7 @@ counting::Counts operations_of_the_law() {
   const auto first = [](const Triple<Pack>& v) { return Triple<Number>{double(v.x[0]), double(v.y[0]), double(v.z[0])}; };
   const Touch<Pack>& from = t.touch[0];
   const Touch<Number> touch{double(from.overlap[0]), first(from.normal), first(from.velocity), first(from.spin_i),
-                            first(from.spin_j), double(from.arm_i[0]), double(from.arm_j[0])};
+                            first(from.spin_j), double(from.arm_i[0]), double(from.arm_j[0]), double(from.closing[0])};
   Springs<Number> springs{first(t.springs[0].tangential), {0.0, 0.0, 0.0}, double(t.springs[0].contact_radius[0])};
   const Interval<Number> dt(5e-8, 1 / 5e-8);
   counting::counts = {};
