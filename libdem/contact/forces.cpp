@@ -159,24 +159,17 @@ double impulse_steps(std::uint8_t before, std::uint8_t now) { return 0.5 * (stri
 // has only the motion of the two to foresee its impact by.
 constexpr std::uint8_t levels_above_contacts = 2, levels_above_apart = 1;
 
-std::uint8_t finest_grain(const ForceInput& in, const Block& block) {
-  std::uint8_t finest = in.highest;
-  for (std::size_t k = 0; k < PairContacts::width; ++k) {
-    finest = std::min(finest, in.level[block.first[k]]);
-    if (block.second[k] < in.level.size()) finest = std::min(finest, in.level[block.second[k]]);
-  }
-  return finest;
-}
-
-void choose_level(const ForceInput& in, const Block& block, const LevelScale& scale, Activity& activity, const Demand& demand,
+// `finest`: level of the finest of a block's grains.
+void choose_level(const ForceInput& in, std::uint8_t finest, const LevelScale& scale, Activity& activity, const Demand& demand,
                   std::uint8_t above) {
-  const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, finest_grain(in, block) + above));
+  const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, finest + above));
   activity.level = next_level(activity.level, in.due, cap, scale, demand);
 }
 
 // m/s, by how much the speed at which the bodies of a lane near each other may change until all levels are due again.
-double jolt_of(const ForceInput& in, const Block& block) {
+double jolt_of(const ForceInput& in, const Block& block, bool crosses) {
   double jolt = in.jolt[block.first[0] / chunk_rows];
+  if (!crosses) return jolt;
   for (std::size_t k = 0; k < PairContacts::width; ++k)
     if (block.second[k] < in.level.size()) jolt = std::max(jolt, in.jolt[block.second[k] / chunk_rows]);
   return jolt;
@@ -195,24 +188,26 @@ void add_demand(const ForceInput& in, const LevelScale& scale, double jolt, cons
 }
 
 // The second grains of blocks that cross to other chunks hear of it in add_crossing().
-void ask(const ForceInput& in, const Block& block, std::uint8_t level, bool crosses, const ForceOutput& out) {
+void ask(const Block& block, std::uint8_t level, bool crosses, const ForceOutput& out) {
   const auto ask_one = [&](std::uint32_t i) { out.asked[i] = std::min(out.asked[i], level); };
   for (std::size_t k = 0; k < PairContacts::width; ++k) ask_one(block.first[k]);
   if (crosses) return;
-  for (std::size_t k = 0; k < PairContacts::width; ++k)
-    if (block.second[k] < in.level.size()) ask_one(block.second[k]);
+  for (std::size_t k = 0; k < PairContacts::width; ++k) ask_one(block.second[k]);
 }
+
+inline std::uint8_t least(const Pack& levels) { return std::uint8_t(std::experimental::hmin(levels)); }
 
 struct Approach {
   double gap;     // m, the smallest that a lane still has to close before a contact forms; < 0 where one forms now
   bool soon;      // may a lane form a contact until all levels are due again?
-  Demand demand;  // nothing unless levels are in use
+  Demand demand;  // nothing unless levels are in use; likewise:
+  std::uint8_t finest;  // level of the finest grain
 };
 template <class Law>
-JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number) {
+JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number, bool crosses) {
   const Block& block = pairs.block[number];
-  Approach approach{std::numeric_limits<double>::infinity(), false, {}};
-  const double jolt = levels_in_use(in) ? jolt_of(in, block) : 0;
+  Approach approach{std::numeric_limits<double>::infinity(), false, {}, in.highest};
+  const double jolt = levels_in_use(in) ? jolt_of(in, block, crosses) : 0;
   for (std::size_t lane = 0; lane < PairContacts::width; lane += pack_width) {
     const auto i = [&](std::size_t k) -> const GrainRow& { return in.grains[block.first[lane + k]]; };
     const auto j = [&](std::size_t k) -> const GrainRow& { return in.grains[block.second[lane + k]]; };
@@ -227,6 +222,9 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
     if (!levels_in_use(in)) continue;
     const auto motion_i = load_quads([&](std::size_t k) { return i(k).motion.data(); });
     const auto motion_j = load_quads([&](std::size_t k) { return j(k).motion.data(); });
+    const auto arrival_i = load_quads([&](std::size_t k) { return i(k).arrival.data(); });
+    const auto arrival_j = load_quads([&](std::size_t k) { return j(k).arrival.data(); });
+    approach.finest = std::min(approach.finest, least(smaller(arrival_i[3], arrival_j[3])));
     const Triple<Pack> apart{motion_j[0] - motion_i[0], motion_j[1] - motion_i[1], motion_j[2] - motion_i[2]};
     const Pack speed = absolute(dot(apart, branch) / distance);
     approach.soon |= any_of(gap < (speed + Pack(jolt)) * Pack(longest_stride(in)));
@@ -241,6 +239,7 @@ struct LaneTouch {
   Touch<Pack> touch;
   Triple<Pack> centres;         // m/s, of i less j
   Pack inverse_smaller_radius;  // 1/m
+  Pack level;                   // of the finer of the two grains
 };
 inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs, std::size_t number, std::size_t lane) {
   const Block& block = pairs.block[number];
@@ -274,6 +273,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   touch.velocity = r.centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
   touch.closing = dot(Triple<Pack>{arrival_i[0] - arrival_j[0], arrival_i[1] - arrival_j[1], arrival_i[2] - arrival_j[2]}, touch.normal);
   r.inverse_smaller_radius = larger(inverse_i, inverse_j);
+  r.level = smaller(arrival_i[3], arrival_j[3]);
   return r;
 }
 
@@ -359,13 +359,16 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
   double advance = advance_of(in, 0), steps = 1;
   if (levels_in_use(in)) {
     const std::uint8_t before = activity.level;
-    const double jolt = jolt_of(in, block);
+    const double jolt = jolt_of(in, block, crosses);
     Demand demand;
-    for (std::size_t p = 0; p < packs; ++p)
+    std::uint8_t finest = in.highest;
+    for (std::size_t p = 0; p < packs; ++p) {
+      finest = std::min(finest, least(lanes[p].level));
       add_demand(in, scale, jolt, -lanes[p].touch.overlap, load(block.contact_radius, p * pack_width),
                  absolute(dot(lanes[p].touch.velocity, lanes[p].touch.normal)), demand);
-    choose_level(in, block, scale, activity, demand, levels_above_contacts);
-    ask(in, block, activity.level, crosses, out);
+    }
+    choose_level(in, finest, scale, activity, demand, levels_above_contacts);
+    ask(block, activity.level, crosses, out);
     advance = advance_of(in, woken ? 0 : before);
     steps = impulse_steps(woken ? activity.level : before, activity.level);
   }
@@ -393,13 +396,13 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
       } else if (activity.level > in.due) {
         continue;
       }
-      const Approach approach = look_at(law, in, pairs, b);
+      const Approach approach = look_at(law, in, pairs, b, crosses);
       activity.asleep = approach.gap > 0 && !approach.soon;
       if (approach.gap >= 0) {
         activity.wake = in.odometer + cautious * approach.gap;
         if (!activity.asleep && levels_in_use(in)) {
-          choose_level(in, pairs.block[b], pairs.kind[b].scale, activity, approach.demand, levels_above_apart);
-          ask(in, pairs.block[b], activity.level, crosses, out);
+          choose_level(in, approach.finest, pairs.kind[b].scale, activity, approach.demand, levels_above_apart);
+          ask(pairs.block[b], activity.level, crosses, out);
         }
         continue;
       }

@@ -28,7 +28,7 @@ struct ForceInput {
 
 struct ForceOutput {
   std::vector<ForceRow>& forces;     // and the phantoms'
-  std::vector<std::uint8_t>& asked;  // [N], the finest level that an evaluated contact asks of the grain
+  std::vector<std::uint8_t>& asked;  // [N], the finest level that an evaluated contact asks of the grain; and the phantoms'
 };
 
 // Evaluates all contacts that are due with the law; memory and, where one is kept, the ledger sums of the stores' chunks change.

@@ -25,7 +25,7 @@ struct GrainStore {
   std::vector<std::uint32_t> id;
   std::vector<Vec4> listed;           // m, where the grains were when the lists were built; then 0
   std::vector<std::uint8_t> level;    // a grain moves at every 2^level-th step, and lies where it will be then
-  std::vector<std::uint8_t> asked;    // the level that its contacts ask for
+  std::vector<std::uint8_t> asked;    // the level that its contacts ask for; and phantoms
 
   std::size_t size() const { return caller_mass.size(); }
   GrainTable table() const { return {rows, material, mass, inertia}; }

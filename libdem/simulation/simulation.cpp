@@ -455,6 +455,7 @@ struct Simulation::Engine {
     if constexpr (Levels) {
       grain.place += setup.step * stride(grains.level[i]) * velocity;
       grain.arrival = velocity + 0.5 * three.cwiseProduct(faster);
+      grain.arrival[3] = grains.level[i];
       motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(setup.levels - grains.level[i])) * faster.cwiseAbs());
     } else {
       grain.place += setup.step * velocity;
