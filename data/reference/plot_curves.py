@@ -1,23 +1,25 @@
 #!/usr/bin/env python3
-"""Draws jamscope's curves of Dosta et al. 2024 over those of other codes: dosta2024_*.csv beside this file -> dosta2024_*.svg.
+"""Draws curves over each other: tables case,code,t_s,value beside this file -> SVG. No dependencies.
 
-No dependencies. The curves come from `JAMSCOPE_CURVES=data/reference build/tests/dem_tests --gtest_filter='Dosta*'`.
+dosta2024_*.csv: jamscope's curves come from `JAMSCOPE_CURVES=data/reference build/tests/dem_tests --gtest_filter='Dosta*'`.
+force_history.csv: README.md of this folder's parent says how it was made.
 """
 import csv
 import pathlib
 
 HERE = pathlib.Path(__file__).parent
-COLOURS = {"LIGGGHTS": "#d95f02", "MUSEN": "#7570b3", "jamscope": "#1b9e77"}
+COLOURS = {"LIGGGHTS": "#d95f02", "MUSEN": "#7570b3", "jamscope": "#1b9e77", "every step": "#d95f02", "own rate": "#1b9e77"}
 PLOTS = [
-    ("impact_25k", "Steel ball into 25,000 grains", "displacement of the ball (mm)", 1e3),
-    ("silo_large_M1", "Silo, orifice of 60 mm", "grains above the orifice (thousand)", 1e-3),
+    ("dosta2024", "impact_25k", "Steel ball into 25,000 grains (Dosta et al. 2024)", "displacement of the ball (mm)", 1e3),
+    ("dosta2024", "silo_large_M1", "Silo, orifice of 60 mm (Dosta et al. 2024)", "grains above the orifice (thousand)", 1e-3),
+    ("force_history", "force_history", "The first jam of ft4_quick, contacts at every step of 5e-8 s and at their own rate", "compressive force (N)", 1),
 ]
 WIDTH, HEIGHT, LEFT, TOP, RIGHT, BOTTOM = 640, 400, 70, 40, 20, 50
 
 
-def curves(scene):
+def curves(tables, scene):
     found = {}
-    for path in sorted(HERE.glob("dosta2024_*.csv")):
+    for path in sorted(HERE.glob(f"{tables}*.csv")):
         with open(path) as file:
             for row in csv.DictReader(file):
                 if row["case"] == scene:
@@ -39,8 +41,8 @@ def ticks(low, high):
     return [first + k * step for k in range(int((high - first) / step + 1e-9) + 1)]
 
 
-def draw(scene, title, label, scale):
-    found = curves(scene)
+def draw(tables, scene, title, label, scale):
+    found = curves(tables, scene)
     if not found:
         return
     points = [(t, v * scale) for curve in found.values() for t, v in curve]
@@ -55,7 +57,7 @@ def draw(scene, title, label, scale):
     out = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="12">',
         f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>',
-        f'<text x="{WIDTH / 2}" y="20" text-anchor="middle" font-size="14">{title} (Dosta et al. 2024)</text>',
+        f'<text x="{WIDTH / 2}" y="20" text-anchor="middle" font-size="14">{title}</text>',
         f'<text x="{WIDTH / 2}" y="{HEIGHT - 10}" text-anchor="middle">time ({unit})</text>',
         f'<text transform="translate(16 {HEIGHT / 2}) rotate(-90)" text-anchor="middle">{label}</text>',
     ]
@@ -70,7 +72,8 @@ def draw(scene, title, label, scale):
         out.append(f'<polyline points="{path}" fill="none" stroke="{COLOURS[code]}" stroke-width="2"/>')
         out.append(f'<text x="{WIDTH - RIGHT - 90}" y="{HEIGHT - BOTTOM - 28 - 16 * k}" fill="{COLOURS[code]}">{code}</text>')
     out.append("</svg>")
-    (HERE / f"dosta2024_{scene}.svg").write_text("\n".join(out) + "\n")
+    name = scene if scene == tables else f"{tables}_{scene}"
+    (HERE / f"{name}.svg").write_text("\n".join(out) + "\n")
 
 
 for plot in PLOTS:
