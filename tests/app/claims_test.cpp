@@ -132,5 +132,20 @@ TEST_F(ClaimsProgram, ThePapersClaimsAreThere) {
     EXPECT_THAT(run_program("claims " + (folder_ / "runs") + " --claims " JAMSCOPE_DATA_DIR "/reference/paper_claims.toml --format " + format).out, HasSubstr("20 N"));
 }
 
+// What is not measured from the committed runs lacks a run that is still to come.
+TEST_F(ClaimsProgram, TheCommittedRunsAreMeasured) {
+  const Outcome outcome =
+      run_program("claims " JAMSCOPE_DATA_DIR "/reference/paper --claims " JAMSCOPE_DATA_DIR "/reference/paper_claims.toml --format json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  int measured = 0;
+  for (const json& row : json::parse(outcome.out)) {
+    if (row["verdict"] != "not measured")
+      ++measured;
+    else
+      EXPECT_THAT(row["how"].get<std::string>(), HasSubstr("no run ft4_")) << row["name"];
+  }
+  EXPECT_GE(measured, 2);
+}
+
 }  // namespace
 }  // namespace jamscope
