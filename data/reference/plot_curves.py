@@ -67,10 +67,12 @@ def draw(tables, scene, title, label, scale):
     for v in ticks(y0, y1):
         out.append(f'<line x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{py(v):.1f}" y2="{py(v):.1f}" stroke="#ddd"/>')
         out.append(f'<text x="{LEFT - 6}" y="{py(v) + 4:.1f}" text-anchor="end">{v:g}</text>')
+    ends_low = max(curve[-1][1] for curve in found.values()) * scale < (y0 + y1) / 2
+    legend = TOP + 12 + 16 * (len(found) - 1) if ends_low else HEIGHT - BOTTOM - 28  # away from the curves' ends
     for k, (code, curve) in enumerate(sorted(found.items())):
         path = " ".join(f"{px(t):.1f},{py(v * scale):.1f}" for t, v in curve)
         out.append(f'<polyline points="{path}" fill="none" stroke="{COLOURS[code]}" stroke-width="2"/>')
-        out.append(f'<text x="{WIDTH - RIGHT - 90}" y="{HEIGHT - BOTTOM - 28 - 16 * k}" fill="{COLOURS[code]}">{code}</text>')
+        out.append(f'<text x="{WIDTH - RIGHT - 90}" y="{legend - 16 * k}" fill="{COLOURS[code]}">{code}</text>')
     out.append("</svg>")
     name = scene if scene == tables else f"{tables}_{scene}"
     (HERE / f"{name}.svg").write_text("\n".join(out) + "\n")
