@@ -11,6 +11,7 @@
 #include "apps/jamscope/errors.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/results_file.hpp"
+#include "libjam/statistics/run_groups.hpp"
 #include "libjam/statistics/sampled_durations.hpp"
 
 namespace jamscope {
@@ -25,7 +26,10 @@ struct Run {
   double record = 0;  // s
   std::uint64_t began = 0;  // jams that began in the record
   std::vector<jam::Lifetime> lifetimes;
+  std::vector<double> durations;  // s, of jams that began in the record, those that it cuts off as far as it goes
   std::vector<double> peaks;  // N
+  std::vector<double> blade_force, blade_torque;  // [frames] N, N m
+  double energy = 0;  // J, put in by the blade
   jam::Rate rate;
   jam::Quantile median{nan, nan, nan};  // s
   double jammed_share = nan, longest = nan, work = nan, fano = nan, independent = nan;
@@ -85,6 +89,12 @@ Run read_run(const std::string& path, const CompareOptions& options) {
   if (options.by == CompareBy::step && a.every_step.empty())
     throw jam::DataError(file.string() + ": holds no jams of every step, expected them; --by frame compares those of frames");
   Run run = options.by == CompareBy::step ? of_steps(a, options) : of_frames(a);
+  for (const jam::Lifetime& life : run.lifetimes) run.durations.push_back(life.time);
+  for (const jam::FrameSummary& frame : a.frames) {
+    if (!std::isnan(frame.blade_force)) run.blade_force.push_back(frame.blade_force);
+    if (!std::isnan(frame.blade_torque)) run.blade_torque.push_back(frame.blade_torque);
+  }
+  run.energy = a.flow_energy.total;
   run.name = path;
   while (run.name.size() > 1 && run.name.back() == '/') run.name.pop_back();
   return run;
@@ -181,13 +191,119 @@ std::string json_text(const std::vector<Run>& runs, const jam::BlockMean& mean) 
   return json.dump(2) + "\n";
 }
 
+// What groups of runs are compared by: shares of the records, and distributions of values.
+struct SharedQuantity {
+  const char *name, *unit;
+  double scale;
+  jam::RunShare (*of)(const Run&);
+};
+constexpr SharedQuantity shared_quantities[] = {
+    {"rate of jams", "1/s", 1, [](const Run& r) { return jam::RunShare{double(r.began), r.record}; }},
+    {"jammed time over record", "%", 1e2, [](const Run& r) { return jam::RunShare{r.jammed_share * r.record, r.record}; }},
+    {"largest force, mean of the runs", "N", 1, [](const Run& r) { return jam::RunShare{r.peaks.empty() ? 0 : *std::max_element(r.peaks.begin(), r.peaks.end()), 1}; }},
+    {"power of the blade", "mW", 1e3, [](const Run& r) { return jam::RunShare{r.energy, r.record}; }},
+};
+struct DistributedQuantity {
+  const char *name, *unit;
+  double scale;
+  std::vector<double> Run::*values;
+};
+constexpr DistributedQuantity distributed_quantities[] = {
+    {"durations of jams, median", "ms", 1e3, &Run::durations},
+    {"peak forces of jams, median", "N", 1, &Run::peaks},
+    {"torque of the blade at frames, median", "mN m", 1e3, &Run::blade_torque},
+    {"force of the blade at frames, median", "N", 1, &Run::blade_force},
+};
+
+struct GroupRow {
+  std::string name, unit;
+  double first, second, distance, p, seen;  // distance of the distributions, NaN where it is a share
+};
+std::vector<GroupRow> compare_groups(const std::vector<Run>& first, const std::vector<Run>& second) {
+  std::vector<GroupRow> rows;
+  for (const SharedQuantity& q : shared_quantities) {
+    const auto shares = [&](const std::vector<Run>& runs) {
+      std::vector<jam::RunShare> all;
+      for (const Run& run : runs) all.push_back(q.of(run));
+      return all;
+    };
+    const auto value = [&](const std::vector<jam::RunShare>& all) {
+      double amount = 0, over = 0;
+      for (const jam::RunShare& run : all) amount += run.amount, over += run.over;
+      return q.scale * amount / over;
+    };
+    const std::vector<jam::RunShare> a = shares(first), b = shares(second);
+    rows.push_back({q.name, q.unit, value(a), value(b), nan, jam::same_share(a, b).p, jam::seen_factor(a, b)});
+  }
+  for (const DistributedQuantity& q : distributed_quantities) {
+    const auto values = [&](const std::vector<Run>& runs) {
+      std::vector<std::vector<double>> all;
+      for (const Run& run : runs) all.push_back(run.*q.values);
+      return all;
+    };
+    const auto median = [&](const std::vector<std::vector<double>>& all) {
+      std::vector<double> pooled;
+      for (const std::vector<double>& run : all) pooled.insert(pooled.end(), run.begin(), run.end());
+      return q.scale * median_of(pooled);
+    };
+    const std::vector<std::vector<double>> a = values(first), b = values(second);
+    const jam::GroupTest test = jam::same_distribution(a, b);
+    rows.push_back({q.name, q.unit, median(a), median(b), test.difference, test.p, jam::seen_factor(a, b)});
+  }
+  return rows;
+}
+
+std::string group_text(const std::vector<Run>& first, const std::vector<Run>& second) {
+  std::string out;
+  for (const auto* group : {&first, &second}) {
+    std::size_t jams = 0;
+    double record = 0;
+    std::vector<std::string> names;
+    for (const Run& run : *group) jams += run.began, record += run.record, names.push_back(run.name);
+    out += fmt::format("{}: {} runs, {:.4g} s, {} jams: {}\n", group == &first ? "first" : "second", names.size(), record, jams, fmt::join(names, " "));
+  }
+  const auto number = [](double x) { return std::isnan(x) ? std::string("-") : fmt::format("{:.4g}", x); };
+  out += fmt::format("\n{:<45}  {:>9}  {:>9}  {:>8}  {:>7}  {:>11}\n", "", "first", "second", "distance", "p", "seen from x");
+  for (const GroupRow& row : compare_groups(first, second))
+    out += fmt::format("{:<45}  {:>9}  {:>9}  {:>8}  {:>7.3g}  {:>11}\n", row.name + ", " + row.unit, number(row.first), number(row.second), number(row.distance),
+                       row.p, number(row.seen));
+  out += "\np: so often runs dealt out to the groups at random differ by as much, in the value or by the distance of the distributions (Kolmogorov, Smirnov).\n"
+         "seen from x: were all values of one group larger by this factor, 80 of 100 such comparisons would give p < 0.05.\n";
+  if (first.size() < 4 || second.size() < 4)
+    out += fmt::format("{} runs against {} are few: with four against four p can be as low as 0.029.\n", first.size(), second.size());
+  return out;
+}
+
+std::string group_json(const std::vector<Run>& first, const std::vector<Run>& second) {
+  Json json;
+  for (const auto* group : {&first, &second}) {
+    Json runs = Json::array();
+    for (const Run& run : *group) runs.push_back({{"run", run.name}, {"record_s", run.record}, {"jams", run.began}});
+    json["groups"].push_back(runs);
+  }
+  for (const GroupRow& row : compare_groups(first, second))
+    json["quantities"][row.name] = {{"unit", row.unit},          {"first", or_null(row.first)}, {"second", or_null(row.second)}, {"distance", or_null(row.distance)},
+                                    {"p", or_null(row.p)}, {"seen_factor", or_null(row.seen)}};
+  return json.dump(2) + "\n";
+}
+
+std::vector<Run> read_runs(const std::vector<std::string>& paths, const CompareOptions& options) {
+  std::vector<Run> runs;
+  for (const std::string& path : paths) runs.push_back(read_run(path, options));
+  return runs;
+}
+
 }  // namespace
 
 int compare(const CompareOptions& options) {
   if (std::find(std::begin(jam::jam_stream_names), std::end(jam::jam_stream_names), options.stream) == std::end(jam::jam_stream_names))
     throw UsageError(fmt::format("--stream {}: expected global, particle or site", options.stream));
-  std::vector<Run> runs;
-  for (const std::string& path : options.runs) runs.push_back(read_run(path, options));
+  const std::vector<Run> runs = read_runs(options.runs, options);
+  if (!options.against.empty()) {
+    const std::vector<Run> against = read_runs(options.against, options);
+    fmt::print("{}", options.json ? group_json(runs, against) : group_text(runs, against));
+    return 0;
+  }
   std::vector<double> rates;
   std::vector<std::vector<jam::Lifetime>> groups;
   for (const Run& run : runs) {

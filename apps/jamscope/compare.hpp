@@ -10,6 +10,7 @@ enum class CompareBy { step, frame };
 
 struct CompareOptions {
   std::vector<std::string> runs;  // folders that hold a jam.h5, or such files
+  std::vector<std::string> against;  // likewise: a second group, compared with `runs` as one; none: run by run
   CompareBy by = CompareBy::step;
   std::string stream = "global";  // of every step: global, particle or site
   bool json = false;

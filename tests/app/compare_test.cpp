@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,6 +66,33 @@ TEST(Compare, ShowsRunsSideBySideAndTestsThem) {
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("rate, 1/s"));
   EXPECT_THAT(text.out, HasSubstr("all 3 runs"));
+}
+
+TEST(Compare, JudgesGroupsOfRunsBySeeds) {
+  const Scratch scratch;
+  std::vector<std::string> first, second;
+  for (int seed = 0; seed < 4; ++seed) {
+    first.push_back(record(scratch, fmt::format("first_{}", seed), std::vector<double>(std::size_t(5 + seed), 1e-3 * (seed + 1))));
+    second.push_back(record(scratch, fmt::format("second_{}", seed), std::vector<double>(std::size_t(15 + seed), 1e-3 * (seed + 1.5))));
+  }
+  const Outcome outcome = run_program(fmt::format("compare {} --against {} --json", fmt::join(first, " "), fmt::join(second, " ")));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["groups"][1].size(), 4U);
+  const auto& rate = json["quantities"]["rate of jams"];
+  EXPECT_DOUBLE_EQ(rate["first"].get<double>(), (5 + 6 + 7 + 8) / 8.0);
+  EXPECT_DOUBLE_EQ(rate["second"].get<double>(), (15 + 16 + 17 + 18) / 8.0);
+  EXPECT_DOUBLE_EQ(rate["p"].get<double>(), 2.0 / 70);
+  EXPECT_GT(rate["seen_factor"].get<double>(), 1);
+  EXPECT_LT(rate["seen_factor"].get<double>(), 5);
+  const auto& durations = json["quantities"]["durations of jams, median"];
+  EXPECT_GT(durations["p"].get<double>(), 0.05);
+  EXPECT_GT(durations["distance"].get<double>(), 0.1);
+  EXPECT_TRUE(json["quantities"]["torque of the blade at frames, median"].contains("unit"));
+  const Outcome text = run_program(fmt::format("compare {} --against {}", fmt::join(first, " "), second[0]));
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("rate of jams, 1/s"));
+  EXPECT_THAT(text.out, HasSubstr("4 runs against 1 are few"));
 }
 
 TEST(Compare, SaysWhatIsWrong) {

@@ -74,6 +74,8 @@ TEST_F(Readme, CommandsRunAsTheyStand) {
       "--set output.capture_before='0.1 ms' --set output.capture_after='0.1 ms'";
   ASSERT_EQ(shell("jamscope simulate data/cases/ft4_quick.toml -q -o run " + small), 0) << text_of(at("err.txt"));
   for (const char* name : {"down", "up", "a_down", "a_up", "b_down", "b_up", "c_down", "c_up"}) lay_out("run", name);
+  for (int seed = 1; seed <= 4; ++seed)
+    for (const char* group : {"glass_", "soft_"}) lay_out("run", group + std::to_string(seed));
   fs::copy_file(at("run/run.h5"), at("run.h5"));
   for (const char* file : {"particles.dump.xz", "pair.local.xz", "wall.local.xz"}) fs::copy_file(data_ / "formats" / ("liggghts." + std::string(file)), at(file));
   for (const fs::directory_entry& entry : fs::directory_iterator(data_ / "formats/csv"))
