@@ -94,12 +94,17 @@ inline void fill_constants(PairConstants<Pack>& c, const MaterialTable& material
   fill_contacts(c, [&](auto, std::size_t m) { return load(pairs.block[number].constant[m], lane); });
 }
 
+// How two bodies moved last.
+struct LaneMotion {
+  Triple<Pack> centres;         // m/s, velocities at the centres, of i less j; of a wall that of i
+  Triple<Pack> spin_i, spin_j;  // rad/s
+};
+
 // One block's parts in ledger.hpp but for the second half of (1). `get(k)` gives lane k's LastForces; lanes from `count` on book
-// nothing. `centres` are the velocities of i less those of j at the centres (of a wall: zero, its contact point's comes on top),
-// `duration` how long the lanes' impulses are.
+// nothing. `duration`: how long the lanes' impulses are.
 template <class Law, class Get>
 void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c, const ContactForce<Pack>& f,
-          const Mask<Pack>& holds, const Mask<Pack>& touched, const Triple<Pack>& centres, bool wall,
+          const Mask<Pack>& holds, const Mask<Pack>& touched, const LaneMotion& motion, bool wall,
           const Triple<Pack>& wall_velocity, const Pack& duration, std::size_t count, Get get, LedgerSums& sums) {
   const Pack normal_before = gather([&](std::size_t k) { return get(k).normal_energy; });
   const Pack tangential_before = gather([&](std::size_t k) { return get(k).tangential_energy; });
@@ -141,7 +146,7 @@ void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c
     last.surface_energy = f.normal.surface_energy[k];
     last.tangential_energy = tangential_now[k];
     last.rolling_energy = rolling_now[k];
-    sums += half_of_work(last, lane_of(centres, k), lane_of(touch.spin_i, k), lane_of(touch.spin_j, k));
+    sums += half_of_work(last, lane_of(motion.centres, k), lane_of(motion.spin_i, k), lane_of(motion.spin_j, k));
   }
 }
 
@@ -155,14 +160,22 @@ double advance_of(const ForceInput& in, std::uint8_t level) { return in.look ? 0
 // impulse is long.
 double impulse_steps(std::uint8_t before, std::uint8_t now) { return 0.5 * (stride(before) + stride(now)); }
 
-// A contact meets, at the latest after so many levels more, whatever moves the grains that it is between; a pair that is apart
-// has only the motion of the two to foresee its impact by.
-constexpr std::uint8_t levels_above_contacts = 2, levels_above_apart = 1;
+// A contact is evaluated at least at every second movement of its grains (late() could not tell how they moved in longer). So is a pair that
+// is apart, which has only the motion of the two to foresee its impact by.
+constexpr std::uint8_t levels_above = 1;
+
+// A grain that moves while one of its contacts waits goes to and fro: the contacts that are evaluated more often push it, and the one that
+// waits pushes it back at once when it is due, always at the end of the same way. With the velocity that it has then, a tangential spring
+// would be stretched by something that has not happened, steps after steps in the same direction: grains in a jam would creep and
+// drive the blade. What has happened since is the mean velocity: of a grain that has moved twice, that of the second movement less half
+// of what changed it. `late` of a contact that has waited for so many steps: 0 where the grain has moved once since, 1 where twice or more.
+inline Pack late(const Pack& steps, const Pack& per_stride) {
+  return smaller(larger(steps * per_stride - Pack(1.0), Pack(0.0)), Pack(1.0));
+}
 
 // `finest`: level of the finest of a block's grains.
-void choose_level(const ForceInput& in, std::uint8_t finest, const LevelScale& scale, Activity& activity, const Demand& demand,
-                  std::uint8_t above) {
-  const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, finest + above));
+void choose_level(const ForceInput& in, std::uint8_t finest, const LevelScale& scale, Activity& activity, const Demand& demand) {
+  const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, finest + levels_above));
   activity.level = next_level(activity.level, in.due, cap, scale, demand);
 }
 
@@ -195,7 +208,11 @@ void ask(const Block& block, std::uint8_t level, bool crosses, const ForceOutput
   for (std::size_t k = 0; k < PairContacts::width; ++k) ask_one(block.second[k]);
 }
 
-inline std::uint8_t least(const Pack& levels) { return std::uint8_t(std::experimental::hmin(levels)); }
+// Level of the finest of grains with these 2^-level; none of phantoms.
+inline std::uint8_t finest_of(const ForceInput& in, const Pack& per_stride) {
+  const double most = std::experimental::hmax(per_stride);
+  return most > 0 ? std::uint8_t(-std::ilogb(most)) : in.highest;
+}
 
 struct Approach {
   double gap;     // m, the smallest that a lane still has to close before a contact forms; < 0 where one forms now
@@ -224,7 +241,7 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
     const auto motion_j = load_quads([&](std::size_t k) { return j(k).motion.data(); });
     const auto arrival_i = load_quads([&](std::size_t k) { return i(k).arrival.data(); });
     const auto arrival_j = load_quads([&](std::size_t k) { return j(k).arrival.data(); });
-    approach.finest = std::min(approach.finest, least(smaller(arrival_i[3], arrival_j[3])));
+    approach.finest = std::min(approach.finest, finest_of(in, larger(arrival_i[3], arrival_j[3])));
     const Triple<Pack> apart{motion_j[0] - motion_i[0], motion_j[1] - motion_i[1], motion_j[2] - motion_i[2]};
     const Pack speed = absolute(dot(apart, branch) / distance);
     approach.soon |= any_of(gap < (speed + Pack(jolt)) * Pack(longest_stride(in)));
@@ -237,11 +254,12 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
 struct LaneTouch {
   PairConstants<Pack> constants;
   Touch<Pack> touch;
-  Triple<Pack> centres;         // m/s, of i less j
+  LaneMotion motion;
   Pack inverse_smaller_radius;  // 1/m
-  Pack level;                   // of the finer of the two grains
+  Pack per_stride;              // 2^-level of the finer of the two grains
 };
-inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs, std::size_t number, std::size_t lane) {
+// `steps` since the block was evaluated.
+inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs, std::size_t number, std::size_t lane, double steps) {
   const Block& block = pairs.block[number];
   const auto i = [&](std::size_t k) -> const GrainRow& { return in.grains[block.first[lane + k]]; };
   const auto j = [&](std::size_t k) -> const GrainRow& { return in.grains[block.second[lane + k]]; };
@@ -261,19 +279,30 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   const Triple<Pack> branch{x_j - x_i, y_j - y_i, z_j - z_i};
   const Pack distance = square_root(dot(branch, branch));
   Touch<Pack>& touch = r.touch;
-  touch.spin_i = {spin_i[0], spin_i[1], spin_i[2]};
-  touch.spin_j = {spin_j[0], spin_j[1], spin_j[2]};
   // The contact point divides the branch in the ratio of the radii: R_i/(R_i + R_j) = R*/R_j.
   const Pack share = distance * c.effective_radius;
   touch.arm_i = share * inverse_j;
   touch.arm_j = share * inverse_i;
   touch.overlap = radius_i + radius_j - distance;
   touch.normal = branch * Pack(1.0 / distance);
-  r.centres = {vx_i - vx_j, vy_i - vy_j, vz_i - vz_j};
-  touch.velocity = r.centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
-  touch.closing = dot(Triple<Pack>{arrival_i[0] - arrival_j[0], arrival_i[1] - arrival_j[1], arrival_i[2] - arrival_j[2]}, touch.normal);
+  r.motion = {{vx_i - vx_j, vy_i - vy_j, vz_i - vz_j}, {spin_i[0], spin_i[1], spin_i[2]}, {spin_j[0], spin_j[1], spin_j[2]}};
+  touch.spin_i = r.motion.spin_i;
+  touch.spin_j = r.motion.spin_j;
+  r.per_stride = larger(arrival_i[3], arrival_j[3]);
+  Triple<Pack> centres = r.motion.centres, arriving{arrival_i[0] - arrival_j[0], arrival_i[1] - arrival_j[1], arrival_i[2] - arrival_j[2]};
+  if (const Pack late_i = late(steps, arrival_i[3]), late_j = late(steps, arrival_j[3]); any_of(late_i + late_j > Pack(0.0))) {
+    const auto spun_i = load_quads([&](std::size_t k) { return in.spun[block.first[lane + k]].data(); });
+    const auto spun_j = load_quads([&](std::size_t k) { return in.spun[block.second[lane + k]].data(); });
+    touch.spin_i = touch.spin_i - Triple<Pack>{spun_i[0], spun_i[1], spun_i[2]} * late_i;
+    touch.spin_j = touch.spin_j - Triple<Pack>{spun_j[0], spun_j[1], spun_j[2]} * late_j;
+    const Triple<Pack> changed = Triple<Pack>{arrival_i[0] - vx_i, arrival_i[1] - vy_i, arrival_i[2] - vz_i} * late_i -
+                                 Triple<Pack>{arrival_j[0] - vx_j, arrival_j[1] - vy_j, arrival_j[2] - vz_j} * late_j;
+    centres = centres - changed;
+    arriving = arriving - changed * Pack(2.0);
+  }
+  touch.velocity = centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
+  touch.closing = dot(arriving, touch.normal);
   r.inverse_smaller_radius = larger(inverse_i, inverse_j);
-  r.level = smaller(arrival_i[3], arrival_j[3]);
   return r;
 }
 
@@ -323,7 +352,7 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   }
 
   if constexpr (Keep)
-    book(law, touch, c, f, hold, touched, lanes.centres, false, nothing(), Pack(steps * in.step_length), pack_width,
+    book(law, touch, c, f, hold, touched, lanes.motion, false, nothing(), Pack(steps * in.step_length), pack_width,
          [&](std::size_t k) -> LastForces& { return pairs.last[first_lane + k]; }, sums);
   if (in.record)
     for (std::size_t k = 0; k < pack_width; ++k)
@@ -353,8 +382,9 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
   const Block& block = pairs.block[number];
   Activity& activity = pairs.activity[number];
   const LevelScale& scale = pairs.kind[number].scale;
+  const double waited = woken ? 1 : stride(activity.level);
   const auto lanes = [&]<std::size_t... P>(std::index_sequence<P...>) {
-    return std::array<LaneTouch, packs>{touch_of_lanes(in, pairs, number, P * pack_width)...};
+    return std::array<LaneTouch, packs>{touch_of_lanes(in, pairs, number, P * pack_width, waited)...};
   }(std::make_index_sequence<packs>{});
   double advance = advance_of(in, 0), steps = 1;
   if (levels_in_use(in)) {
@@ -363,11 +393,11 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
     Demand demand;
     std::uint8_t finest = in.highest;
     for (std::size_t p = 0; p < packs; ++p) {
-      finest = std::min(finest, least(lanes[p].level));
+      finest = std::min(finest, finest_of(in, lanes[p].per_stride));
       add_demand(in, scale, jolt, -lanes[p].touch.overlap, load(block.contact_radius, p * pack_width),
                  absolute(dot(lanes[p].touch.velocity, lanes[p].touch.normal)), demand);
     }
-    choose_level(in, finest, scale, activity, demand, levels_above_contacts);
+    choose_level(in, finest, scale, activity, demand);
     ask(block, activity.level, crosses, out);
     advance = advance_of(in, woken ? 0 : before);
     steps = impulse_steps(woken ? activity.level : before, activity.level);
@@ -401,7 +431,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
       if (approach.gap >= 0) {
         activity.wake = in.odometer + cautious * approach.gap;
         if (!activity.asleep && levels_in_use(in)) {
-          choose_level(in, approach.finest, pairs.kind[b].scale, activity, approach.demand, levels_above_apart);
+          choose_level(in, approach.finest, pairs.kind[b].scale, activity, approach.demand);
           ask(pairs.block[b], activity.level, crosses, out);
         }
         continue;
@@ -501,6 +531,7 @@ struct WallSlot {
   WallContact* contact;
   LastForces* last;  // where a ledger is kept
   double advance;  // s
+  double waited;   // steps
   double steps;    // of the impulse
 };
 
@@ -528,7 +559,12 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   const auto [v_x, v_y, v_z, inverse_radius] = load_quads([&](std::size_t k) { return grain(k).motion.data(); });
   const auto spin = load_quads([&](std::size_t k) { return grain(k).spin.data(); });
   Touch<Pack> touch;
-  touch.spin_i = {spin[0], spin[1], spin[2]};
+  const auto arrival = load_quads([&](std::size_t k) { return grain(k).arrival.data(); });
+  const auto spun = load_quads([&](std::size_t k) { return in.spun[slot[k].candidate->particle].data(); });
+  const Pack behind = late(gather([&](std::size_t k) { return slot[k].waited; }), arrival[3]);
+  const LaneMotion motion{{v_x, v_y, v_z}, {spin[0], spin[1], spin[2]}, all_lanes(pose.angular_velocity)};
+  const Triple<Pack> changed = Triple<Pack>{arrival[0] - v_x, arrival[1] - v_y, arrival[2] - v_z} * behind;
+  touch.spin_i = motion.spin_i - Triple<Pack>{spun[0], spun[1], spun[2]} * behind;
   touch.spin_j = all_lanes(pose.angular_velocity);
   touch.arm_i = radius;
   touch.arm_j = 0.0;
@@ -536,11 +572,9 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   touch.normal = gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->touch.normal; });
   const Triple<Pack> arm = touch.normal * radius;
   const Triple<Pack> lever = Triple<Pack>{x, y, z} + arm - all_lanes(pose.position);
-  const Triple<Pack> velocity{v_x, v_y, v_z};
   const Triple<Pack> wall_velocity = all_lanes(pose.velocity) + cross(touch.spin_j, lever);
-  touch.velocity = velocity + cross(touch.spin_i, arm) - wall_velocity;
-  const auto arrival = load_quads([&](std::size_t k) { return grain(k).arrival.data(); });
-  touch.closing = dot(Triple<Pack>{arrival[0], arrival[1], arrival[2]} - wall_velocity, touch.normal);
+  touch.velocity = motion.centres - changed + cross(touch.spin_i, arm) - wall_velocity;
+  touch.closing = dot(Triple<Pack>{arrival[0], arrival[1], arrival[2]} - changed * Pack(2.0) - wall_velocity, touch.normal);
 
   Springs<Pack> springs{gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->memory.spring; }),
                         gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->rolling; }),
@@ -555,7 +589,7 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   const Triple<Pack> torque = cross(arm, tangential) + f.rolling.on_i;
   const Triple<Pack> torque_on_wall = f.rolling.on_j - cross(lever, force);
   if constexpr (Keep)
-    book(law, touch, c, f, hold, touched, velocity, true, wall_velocity,
+    book(law, touch, c, f, hold, touched, motion, true, wall_velocity,
          gather([&](std::size_t k) { return slot[k].steps * in.step_length; }), count,
          [&](std::size_t k) -> LastForces& { return *slot[k].last; }, sums);
 
@@ -593,24 +627,25 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   }
 }
 
-// m/s, at which the grain's centre nears the wall where they touch, or leaves it.
-double normal_speed(const GrainRow& grain, const WallPose& pose, const WallTouch& touch) {
+// m/s, at which the grain's centre nears the wall where they touch, or leaves it, on average over the last steps.
+double normal_speed(const GrainRow& grain, const WallPose& pose, const WallTouch& touch, double steps) {
   const Vec3 lever = grain.position() + grain.radius() * touch.normal - pose.position;
-  return std::abs((grain.velocity() - pose.velocity - pose.angular_velocity.cross(lever)).dot(touch.normal));
+  const double behind = std::clamp(steps * grain.arrival[3] - 1, 0.0, 1.0);
+  const Vec3 velocity = (1 + behind) * grain.velocity() - behind * grain.arrival.head<3>();
+  return std::abs((velocity - pose.velocity - pose.angular_velocity.cross(lever)).dot(touch.normal));
 }
 
-void choose_level(const ForceInput& in, const WallCandidate& candidate, Activity& activity, const Demand& demand,
-                  std::uint8_t above, const ForceOutput& out) {
-  const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, in.level[candidate.particle] + above));
+void choose_level(const ForceInput& in, const WallCandidate& candidate, Activity& activity, const Demand& demand, const ForceOutput& out) {
+  const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, in.level[candidate.particle] + levels_above));
   activity.level = next_level(activity.level, in.due, cap, candidate.scale, demand);
   std::uint8_t& asked = out.asked[candidate.particle];
   asked = std::min(asked, activity.level);
 }
 
-Demand demand_of(const WallContacts& walls, const WallCandidate& candidate, const GrainRow& grain, const WallPose& pose) {
+Demand demand_of(const WallContacts& walls, const WallCandidate& candidate, const GrainRow& grain, const WallPose& pose, double steps) {
   Demand demand;
   for (const WallContact& contact : walls.contacts(candidate)) {
-    const double radius = contact.memory.contact_radius, speed = normal_speed(grain, pose, contact.touch);
+    const double radius = contact.memory.contact_radius, speed = normal_speed(grain, pose, contact.touch, steps);
     demand.radius = std::max(demand.radius, radius);
     demand.speed = std::max(demand.speed, speed);
     if (drives_deeper(candidate.scale, radius, speed)) demand.impact = std::max(demand.impact, speed);
@@ -656,12 +691,12 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       double gap = sight - reach, speed = 0;
       for (const WallTouch& touch : touches) {
         gap = std::min(gap, touch.distance - reach);
-        if (levels_in_use(in)) speed = std::max(speed, normal_speed(grain, pose, touch));
+        if (levels_in_use(in)) speed = std::max(speed, normal_speed(grain, pose, touch, 1));
       }
       activity.asleep = gap > in.foresight;
       if (gap > 0) {
         activity.wake = in.odometer + cautious * gap;
-        if (!activity.asleep && levels_in_use(in)) choose_level(in, candidate, activity, {0, speed, speed}, levels_above_apart, out);
+        if (!activity.asleep && levels_in_use(in)) choose_level(in, candidate, activity, {0, speed, speed}, out);
         continue;
       }
       std::erase_if(touches, [&](const WallTouch& touch) { return touch.distance > reach; });
@@ -678,15 +713,16 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
     });
     activity.acts = candidate.size > 0;
     if (!activity.acts) activity.wake = in.odometer;
+    const double waited = woken ? 1 : stride(before);
     double steps = 1;
     if (levels_in_use(in)) {
-      choose_level(in, candidate, activity, demand_of(walls, candidate, grain, pose), levels_above_contacts, out);
+      choose_level(in, candidate, activity, demand_of(walls, candidate, grain, pose, waited), out);
       steps = impulse_steps(woken ? activity.level : before, activity.level);
     }
     chunk.evaluations += {0, 0, candidate.size, std::uint64_t{candidate.size} << activity.level};
     for (std::size_t t = 0; t < candidate.size; ++t) {
       const std::size_t row = candidate.contact_begin + t;
-      slot[count++] = {&candidate, &walls.contact[row], Keep ? &walls.last[row] : nullptr, advance_of(in, woken ? 0 : before), steps};
+      slot[count++] = {&candidate, &walls.contact[row], Keep ? &walls.last[row] : nullptr, advance_of(in, woken ? 0 : before), waited, steps};
       if (count == pack_width) {
         block();
         count = 0;

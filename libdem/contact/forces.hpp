@@ -23,6 +23,7 @@ struct ForceInput {
   double foresight = 0;                          // m, by how much more the odometer may grow until all levels are due again
   const std::vector<double>& jolt;               // [chunks] m/s, by how much two grains' speeds may change until then
   const std::vector<std::uint8_t>& level;        // [N] of the grains until now
+  const std::vector<Vec4>& spun;                 // rad/s, half of the last change of each grain's spin, and the phantoms'
   const std::vector<std::uint32_t>& due_chunks;  // that have such a grain
 };
 

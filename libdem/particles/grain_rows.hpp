@@ -18,7 +18,7 @@ struct alignas(64) GrainRow {
   Vec4 motion = Vec4::Zero();  // m/s: velocity, half a step before the place; then 1/m: one over the radius
   Vec4 spin = Vec4::Zero();    // rad/s: angular velocity, likewise; then 0
   Vec4 arrival = Vec4::Zero();  // m/s: velocity at the place if the acceleration has stayed what it was at the place before;
-                                // then the grain's level
+                                // then 2^-level of the grain, 0 where all grains are due at every step
   auto position() const { return place.head<3>(); }
   auto velocity() const { return motion.head<3>(); }
   auto angular_velocity() const { return spin.head<3>(); }
@@ -40,7 +40,6 @@ inline GrainRow phantom() {
   GrainRow row;
   row.place = {1e30, 0, 0, 1};
   row.motion = {0, 0, 0, 1};
-  row.arrival = {0, 0, 0, 255};  // coarser than any grain
   return row;
 }
 

@@ -20,6 +20,7 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   const Particles& p = grains.caller;
   grains.order = std::move(order);
   const std::vector<GrainRow> rows_before = std::exchange(grains.rows, std::vector<GrainRow>(n + chunks_of(n), phantom()));
+  const std::vector<Vec4> spun_before = std::exchange(grains.spun, std::vector<Vec4>(n + chunks_of(n), Vec4::Zero()));
   grains.forces.assign(n + chunks_of(n), ForceRow{});
   grains.mass.resize(n);
   grains.inertia.resize(n);
@@ -41,6 +42,7 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
     grains.inertia[r] = grains.caller_inertia[i];
     grains.material[r] = p.material[i];
     grains.id[r] = p.id[i];
+    if (!spun_before.empty()) grains.spun[r] = spun_before[row_before[i]];
     if (!level_before.empty()) grains.level[r] = level_before[row_before[i]];
   }
 }

@@ -20,6 +20,7 @@ struct GrainStore {
   std::vector<std::uint32_t> row_of;  // the inverse: row here of the caller's row
   std::vector<GrainRow> rows;         // and phantoms
   std::vector<ForceRow> forces;       // and phantoms
+  std::vector<Vec4> spun;             // rad/s, half of the last change of the angular velocity; and phantoms
   std::vector<double> mass, inertia;  // kg, kg m^2
   std::vector<std::uint8_t> material;
   std::vector<std::uint32_t> id;

@@ -214,7 +214,7 @@ struct Simulation::Engine {
     return {.grains = grains.rows, .materials = materials, .walls = setup.walls, .poses = poses, .step_length = setup.step,
             .step = step, .odometer = odometer, .wall_curvature = setup.wall_curvature, .record = record, .look = look,
             .due = due, .highest = setup.levels, .foresight = foresight, .jolt = closing_jolt, .level = grains.level,
-            .due_chunks = due_chunks};
+            .spun = grains.spun, .due_chunks = due_chunks};
   }
   ForceOutput force_output() { return {grains.forces, grains.asked}; }
 
@@ -452,14 +452,14 @@ struct Simulation::Engine {
     grain.spin += spun;
     const Vec4 velocity = three.cwiseProduct(grain.motion);
     motion.speed = motion.speed.cwiseMax(velocity.cwiseAbs());
+    grain.arrival = velocity + 0.5 * three.cwiseProduct(faster);
     if constexpr (Levels) {
       grain.place += setup.step * stride(grains.level[i]) * velocity;
-      grain.arrival = velocity + 0.5 * three.cwiseProduct(faster);
-      grain.arrival[3] = grains.level[i];
+      grain.arrival[3] = 1 / stride(grains.level[i]);
+      grains.spun[i] = 0.5 * spun;
       motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(setup.levels - grains.level[i])) * faster.cwiseAbs());
     } else {
       grain.place += setup.step * velocity;
-      grain.arrival = velocity + 0.5 * three.cwiseProduct(faster);
     }
   }
 
