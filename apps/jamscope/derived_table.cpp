@@ -7,6 +7,7 @@
 
 #include "apps/jamscope/console.hpp"
 #include "libdem/case/automatic_step.hpp"
+#include "libdem/contact/rolling/rolling.hpp"
 
 namespace jamscope {
 namespace {
@@ -77,6 +78,14 @@ std::vector<DerivedRow> derived_table(const dem::Case& c, const dem::Derived& d)
   add_plain("contact", "Cohesion number", d.cohesion, fmt::format("{:.2g}", d.cohesion),
             "(W^5 / (E^2 R^8))^(1/3) / (rho g)");
   if (c.rheometer) add("contact", "mean grain squeezed in the gap", d.mean_in_gap.force, "N", d.mean_in_gap.force > 0 ? "" : "it fits");
+  // A grain that rolls between tip and vessel goes at half the tip's speed.
+  const double rolling_friction =
+      c.rheometer ? c.interactions[dem::material_index(c, c.bed.material)][dem::material_index(c, c.blade.material)].rolling_friction : 0;
+  if (rolling_friction > 0 && c.contact.rolling != "none" && c.contact.rolling != "elastic_plastic") {
+    const double radius = c.bed.mean_diameter / 2, spin = c.motion.tip_speed / c.bed.mean_diameter;
+    add("contact", "rolling resistance in full up to", dem::rolling::full_torque_force(d.mean_mass, radius, spin, rolling_friction, c.step), "N",
+        "on a grain that rolls along the tip, at this step; rolling = \"elastic_plastic\" has no such limit");
+  }
 
   add("time", "step", c.step, "s",
       fmt::format("{} of the smallest grain's Rayleigh time, {} of the mean one's",

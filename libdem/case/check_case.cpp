@@ -267,7 +267,7 @@ std::vector<CaseProblem> case_problems(const Case& c, double tip) {
     check.refuse("run.levels", "must be at most " + std::to_string(most_levels) + ", got " + std::to_string(c.levels));
     step = false;
   }
-  if ((c.levels > 0 || c.automatic_step) && !(c.accuracy > 0 && c.accuracy <= most_accuracy))
+  if (!(c.accuracy > 0 && c.accuracy <= most_accuracy))
     check.refuse("run.accuracy", "must lie above 0 and be at most " + text(most_accuracy) + ", got " + text(c.accuracy));
   const double gravity = c.gravity.norm();
   if (!(gravity > 0) || !std::isfinite(gravity))

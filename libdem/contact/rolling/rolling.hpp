@@ -4,7 +4,8 @@
 //
 // A torque of constant size chatters about w = 0 and, at large forces, turns the spin around within a step and grows without
 // bound. So the torque of one contact takes away at most a tenth of a spin in a step: |tau| dt <= 0.1 I* |w|. A tenth, because
-// a grain has up to about twelve contacts and their sum must not turn the spin around either.
+// a grain has up to about twelve contacts and their sum must not turn the spin around either. In a jam that is far from the whole
+// torque (full_torque_force()); an elastic_plastic one has no such limit.
 #pragma once
 #include <string_view>
 
@@ -34,6 +35,12 @@ Triple<Real> against(const Triple<Real>& w, const Real& size, const PairConstant
 template <class Real>
 Triple<Real> negative(const Triple<Real>& t) {
   return {Real(0.0) - t.x, Real(0.0) - t.y, Real(0.0) - t.z};
+}
+
+// N, the force on a grain of this mass, kg, up to which a constant torque resists in full where the grain rolls along a wall with this spin,
+// rad/s: mu_r R F dt = share I w, with I = (2/5) m R^2.
+inline double full_torque_force(double mass, double radius, double spin, double rolling_friction, double dt) {
+  return largest_share_of_spin * 0.4 * mass * radius * spin / (rolling_friction * dt);
 }
 
 }  // namespace rolling

@@ -9,6 +9,7 @@
 
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/errors.hpp"
+#include "libdem/particles/particles.hpp"
 
 namespace dem {
 namespace {
@@ -308,6 +309,26 @@ TEST(EveryLaw, APackGivesTheSameBitsAsSingleNumbers) {
       }
     }
   });
+}
+
+TEST(ConstantTorque, ResistsInFullUpToTheForceThatIsSaid) {
+  // A grain that rolls along a plate at half of 0.25 m/s.
+  const double radius = 0.4625e-3, mass = 2500 * sphere_volume(radius), speed = 0.125, step = 5e-8;
+  const MaterialTable table = make_material_table({{"glass", 2500, 63e9, 0.2}}, {{{0.9, 0.5, 0.01, 0.0}}});
+  const PairConstants<double> c = wall_constants(table.pair[0], {radius, mass, sphere_inertia(mass, radius)});
+  const double force = rolling::full_torque_force(mass, radius, speed / radius, 0.01, step);
+  EXPECT_NEAR(force, 10.4, 0.1);
+  Touch<double> touch{};
+  touch.normal.z = -1;
+  touch.spin_i.y = speed / radius;
+  const auto torque = [&](double load) {
+    NormalForce<double> normal{};
+    normal.elastic = load;
+    Springs<double> springs{};
+    return vec(ConstantTorque::evaluate(touch, c, normal, springs, Interval<double>(step)).on_i).y() / (-0.01 * radius * load);
+  };
+  EXPECT_NEAR(torque(0.999 * force), 1, 1e-12);
+  EXPECT_NEAR(torque(2 * force), 0.5, 1e-12);
 }
 
 // A composition that is compiled as one piece gives the bits of the same parts put together at run time.
