@@ -24,8 +24,9 @@ using List = std::vector<double>;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Claim {
-  std::string name, says, source, expected, measure, of, run, against_of, against_run, unit;
+  std::string name, says, source, expected, measure, of, at, run, against_of, against_run, unit;
   std::uint64_t number = 0, first = 0, components = 1;
+  double least_time = 0;  // s, of a record that counts
   List values;
   std::optional<double> low, high;
 };
@@ -92,6 +93,16 @@ struct Measure {
   const char* needs = "";  // without which it is not defined, where that is not plain
 };
 double same_length(const List& a, const List& b, double (*f)(const List&, const List&)) { return a.size() == b.size() && !a.empty() ? f(a, b) : nan; }
+// As far as both go: what stands at one place in one is compared with what stands there in the other.
+double both_have(const List& a, const List& b, double (*f)(const List&, const List&)) {
+  const auto n = std::ptrdiff_t(std::min(a.size(), b.size()));
+  return n > 0 ? f(List(a.begin(), a.begin() + n), List(b.begin(), b.begin() + n)) : nan;
+}
+// Two numbers, or the last that two lists of places (`at`) share.
+double of_last(const List& a, const List& b, const Claim& claim, double (*f)(double, double)) {
+  if (a.empty() || a.size() != b.size() || (a.size() != 1 && claim.at.empty())) return nan;
+  return f(a.back(), b.back());
+}
 // Places of `components` numbers each; one of which a number is unknown is unknown.
 double rms_difference(const List& a, const List& b, const Claim& claim) {
   if (a.size() != b.size() || a.size() % claim.components != 0) return nan;
@@ -140,19 +151,21 @@ constexpr Measure measures[] = {
          return most;
        });
      }},
-    {"ratio", "of two runs' numbers", true, [](const List& a, const List& b, const Claim&) { return a.size() == 1 && b.size() == 1 ? a[0] / b[0] : nan; }},
-    {"difference", "of two runs' numbers", true, [](const List& a, const List& b, const Claim&) { return a.size() == 1 && b.size() == 1 ? a[0] - b[0] : nan; }},
-    {"share_above", "of the places at which one run's list is above the other's", true,
+    {"ratio", "of two runs' numbers; with `at`, at the last place that both cover", true,
+     [](const List& a, const List& b, const Claim& c) { return of_last(a, b, c, [](double x, double y) { return x / y; }); }},
+    {"difference", "of two runs' numbers; with `at`, at the last place that both cover", true,
+     [](const List& a, const List& b, const Claim& c) { return of_last(a, b, c, [](double x, double y) { return x - y; }); }},
+    {"share_above", "of the places at which one run's list is above the other's, as far as both go", true,
      [](const List& a, const List& b, const Claim&) {
-       return same_length(a, b, [](const List& x, const List& y) {
+       return both_have(a, b, [](const List& x, const List& y) {
          double above = 0;
          for (std::size_t k = 0; k < x.size(); ++k) above += x[k] > y[k];
          return above / double(x.size());
        });
      }},
-    {"largest_ratio", "between two runs' lists, upward or downward", true,
+    {"largest_ratio", "between two runs' lists, upward or downward, as far as both go", true,
      [](const List& a, const List& b, const Claim&) {
-       return same_length(a, b, [](const List& x, const List& y) {
+       return both_have(a, b, [](const List& x, const List& y) {
          double most = 1;
          for (std::size_t k = 0; k < x.size(); ++k) most = std::max({most, x[k] / y[k], y[k] / x[k]});
          return most;
@@ -165,6 +178,26 @@ constexpr Measure measures[] = {
        return a.size() == 1 && b.size() == 1 && c.values.size() == 2 ? std::log(a[0] / b[0]) / std::log(c.values[0] / c.values[1]) : nan;
      }},
 };
+
+// A list over the places it stands at, which ascend.
+struct Curve {
+  List at, value;
+};
+
+// Both at the places of `a` that `b` covers, `b` by straight lines between its own.
+std::pair<List, List> at_common_places(const Curve& a, const Curve& b) {
+  std::pair<List, List> both;
+  for (std::size_t k = 0; k < a.at.size(); ++k) {
+    const double x = a.at[k];
+    const auto after = std::lower_bound(b.at.begin(), b.at.end(), x);
+    if (after == b.at.end() || (after == b.at.begin() && *after != x)) continue;
+    const auto i = std::size_t(after - b.at.begin());
+    const double y = *after == x ? b.value[i] : b.value[i - 1] + (b.value[i] - b.value[i - 1]) * (x - b.at[i - 1]) / (b.at[i] - b.at[i - 1]);
+    both.first.push_back(a.value[k]);
+    both.second.push_back(y);
+  }
+  return both;
+}
 
 const Measure* find_measure(const std::string& name) {
   for (const Measure& m : measures)
@@ -191,6 +224,8 @@ std::vector<Claim> read_claims(const std::string& path) {
     s.whole_number("first", c.first, Need::optional);
     s.numbers("values", c.values, Need::optional);
     if (s.whole_number("components", c.components, Need::optional) && c.components == 0) document.problem("claim." + name + ".components", "components is 0, expected 1 or more");
+    s.text("at", c.at, Need::optional);
+    s.quantity("observed_time", dimension::time, c.least_time, Need::optional);
     if (double value = 0; s.number("low", value, Need::optional)) c.low = value;
     if (double value = 0; s.number("high", value, Need::optional)) c.high = value;
     const bool against = s.text("against_run", c.against_run, Need::optional);
@@ -205,6 +240,8 @@ std::vector<Claim> read_claims(const std::string& path) {
     } else if (m->two != against) {
       document.problem(at, m->two ? fmt::format("'{}' takes two runs: against_run is missing", c.measure) : fmt::format("'{}' takes one run, not against_run", c.measure));
     }
+    else if (!c.at.empty() && !m->two)
+      document.problem(at + ".at", fmt::format("'{}' takes one run: `at` says where lists of two stand", c.measure));
     if (!c.low && !c.high) document.problem(at, "holds always: expected low, high or both");
     if (c.low && c.high && *c.low > *c.high) document.problem(at + ".low", "is above high");
     all.push_back(std::move(c));
@@ -252,39 +289,70 @@ std::vector<Summary> read_summaries(const std::vector<std::string>& paths) {
 
 struct Verdict {
   double value = nan, low = nan, high = nan;
-  std::size_t runs = 0, against = 0;  // repetitions
+  std::size_t runs = 0, against = 0;            // repetitions
+  double observed = nan, observed_against = nan;  // s, the longest record of each
   std::string word, why;
+};
+
+// s, how long the record is; NaN where the summary does not say.
+double observed_time(const Summary& s) {
+  const auto time = find(s.analysis, "observed_time_s");
+  return time && time->size() == 1 ? time->front() : nan;
+}
+
+// What a claim is about, of one run.
+struct Measured {
+  Curve curve;           // without places where the claim names none
+  double observed = nan;  // s
 };
 
 Verdict judge(const Claim& claim, const std::vector<Summary>& summaries) {
   const Measure& measure = *find_measure(claim.measure);
   Verdict v;
   std::string missing;
-  const auto lists = [&](const std::string& run, const std::string& of) {
-    std::vector<List> found;
+  const auto of_runs = [&](const std::string& run, const std::string& of) {
+    std::vector<Measured> found;
     for (const Summary& s : summaries) {
       if (s.name != run) continue;
-      if (auto list = find(s.analysis, of))
-        found.push_back(std::move(*list));
+      const double observed = observed_time(s);
+      if (claim.least_time > 0 && !(observed >= claim.least_time)) {
+        missing = std::isnan(observed) ? fmt::format("{} does not say how long it is", s.path)
+                                       : fmt::format("{} is {:.4g} s long, expected at least {:.4g} s", s.path, observed, claim.least_time);
+        continue;
+      }
+      auto value = find(s.analysis, of), at = claim.at.empty() ? std::optional<List>(List{}) : find(s.analysis, claim.at);
+      if (!value || !at)
+        missing = fmt::format("{} has no {}", s.path, value ? claim.at : of);
+      else if (!claim.at.empty() && (at->size() != value->size() || !std::is_sorted(at->begin(), at->end())))
+        missing = fmt::format("{}: {} are not the ascending places of {}", s.path, claim.at, of);
       else
-        missing = fmt::format("{} has no {}", s.path, of);
+        found.push_back({{std::move(*at), std::move(*value)}, observed});
     }
     if (found.empty() && missing.empty()) missing = fmt::format("no run {}", run);
     return found;
   };
-  const std::vector<List> mine = lists(claim.run, claim.of);
-  const std::vector<List> others = measure.two ? lists(claim.against_run, claim.against_of) : std::vector<List>{{}};
+  const std::vector<Measured> mine = of_runs(claim.run, claim.of);
+  const std::vector<Measured> others = measure.two ? of_runs(claim.against_run, claim.against_of) : std::vector<Measured>(1);
   v.runs = mine.size();
   v.against = measure.two ? others.size() : 0;
   List values;
-  for (const List& a : mine)
-    for (const List& b : others)
-      if (const double x = measure.of(a, b, claim); std::isfinite(x)) values.push_back(x);
+  for (const Measured& a : mine)
+    for (const Measured& b : others) {
+      const auto [x, y] = claim.at.empty() ? std::pair(a.curve.value, b.curve.value) : at_common_places(a.curve, b.curve);
+      if (const double value = measure.of(x, y, claim); std::isfinite(value)) values.push_back(value);
+    }
   v.word = "not measured";
   if (values.empty()) {
     v.why = !missing.empty() ? missing : *measure.needs == 0 ? "not defined in these runs" : fmt::format("not defined in these runs: it needs {}", measure.needs);
     return v;
   }
+  const auto longest = [](const std::vector<Measured>& runs) {
+    double most = nan;
+    for (const Measured& m : runs) most = std::fmax(most, m.observed);
+    return most;
+  };
+  v.observed = longest(mine);
+  v.observed_against = measure.two ? longest(others) : nan;
   std::sort(values.begin(), values.end());
   v.low = values.front();
   v.high = values.back();
@@ -306,9 +374,13 @@ std::string ours(const Claim& c, const Verdict& v) {
 }
 
 std::string how(const Claim& c, const Verdict& v) {
-  const auto of = [](const std::string& path, const std::string& run, std::size_t n) { return fmt::format("{} of {}{}", path, run, n > 1 ? fmt::format(" ({} runs)", n) : ""); };
-  std::string text = fmt::format("{}: {}", c.measure, of(c.of, c.run, v.runs));
-  if (!c.against_run.empty()) text += ", against " + of(c.against_of, c.against_run, v.against);
+  const auto of = [](const std::string& path, const std::string& run, std::size_t n, double observed) {
+    std::string text = fmt::format("{} of {}", path, run);
+    if (std::isfinite(observed)) text += fmt::format(", {:.3g} s", observed);
+    return n > 1 ? text + fmt::format(" ({} runs)", n) : text;
+  };
+  std::string text = fmt::format("{}: {}", c.measure, of(c.of, c.run, v.runs, v.observed));
+  if (!c.against_run.empty()) text += ", against " + of(c.against_of, c.against_run, v.against, v.observed_against);
   return v.why.empty() ? text : text + "; " + v.why;
 }
 

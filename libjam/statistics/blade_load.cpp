@@ -32,7 +32,7 @@ std::vector<double> averaged(std::span<const double> values, std::size_t rows) {
 
 // `mean`: of each window, with its sign; `least`, `most`: over its steps, or empty; `at_frames`: magnitudes.
 LoadPeaks peaks_of(std::span<const double> mean, std::span<const double> least, std::span<const double> most, std::span<const double> at_frames,
-                   std::size_t rows_of_filter) {
+                   std::size_t rows_of_filter, std::size_t rows_of_block) {
   LoadPeaks peaks;
   std::vector<double> magnitude;
   for (const double value : mean) magnitude.push_back(std::abs(value));
@@ -47,10 +47,8 @@ LoadPeaks peaks_of(std::span<const double> mean, std::span<const double> least, 
   const std::vector<double> slow = averaged(mean, rows_of_filter);
   peaks.filtered = largest(slow);
   peaks.trend = kendall_tau(slow);
-  for (std::size_t b = 0; b < BladeLoad::blocks; ++b) {
-    const std::size_t begin = b * magnitude.size() / BladeLoad::blocks, end = (b + 1) * magnitude.size() / BladeLoad::blocks;
-    peaks.medians.push_back(median(std::span(magnitude).subspan(begin, end - begin)));
-  }
+  for (std::size_t k = 0; k + rows_of_block <= magnitude.size(); k += rows_of_block)
+    peaks.medians.push_back(median(std::span(magnitude).subspan(k, rows_of_block)));
   return peaks;
 }
 
@@ -70,14 +68,15 @@ BladeLoad blade_load(const Series& series, const std::vector<Wall>& walls, std::
   if (blade == walls.end() || series.size() == 0 || w >= series.walls.size() || series.walls[w].force.size() != series.size()) return {unknown, unknown};
   const Series::WallSeries& s = series.walls[w];
   const double window = series.size() > 1 ? (series.time.back() - series.time.front()) / double(series.size() - 1) : series.time.back();
-  const auto rows = std::size_t(std::max(1.0, std::round(BladeLoad::filter / window)));
+  const auto rows = [&](double time) { return std::size_t(std::max(1.0, std::round(time / window))); };
+  const std::size_t of_filter = rows(BladeLoad::filter), of_block = rows(BladeLoad::block);
   std::vector<double> force_at, torque_at;
   for (const FrameLoad& frame : frames) {
     force_at.push_back(std::abs(frame.force));
     torque_at.push_back(std::abs(frame.torque));
   }
-  load.force = peaks_of(vertical(s.force), vertical(s.force_min), vertical(s.force_max), force_at, rows);
-  load.torque = peaks_of(vertical(s.torque), vertical(s.torque_min), vertical(s.torque_max), torque_at, rows);
+  load.force = peaks_of(vertical(s.force), vertical(s.force_min), vertical(s.force_max), force_at, of_filter, of_block);
+  load.torque = peaks_of(vertical(s.torque), vertical(s.torque_min), vertical(s.torque_max), torque_at, of_filter, of_block);
   return load;
 }
 

@@ -16,12 +16,12 @@ struct LoadPeaks {
   double filtered = 0;             // largest mean over BladeLoad::filter
   double median = 0;               // of the windows' means
   double trend = 0;                // Kendall's tau of the means over BladeLoad::filter against time: 1 where they only grow
-  std::vector<double> medians;     // of the windows' means in each of BladeLoad::blocks parts of the record
+  std::vector<double> medians;     // of the windows' means in each whole BladeLoad::block of the record; none in shorter ones
 };
 
 struct BladeLoad {
   static constexpr double filter = 0.04;      // s, between two samples of an instrument at 25 Hz
-  static constexpr std::size_t blocks = 20;
+  static constexpr double block = 0.1;        // s, whatever the record: runs of different lengths can be compared
   LoadPeaks force, torque;                    // along z; about z through the blade's axis
 };
 

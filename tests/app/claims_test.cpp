@@ -57,6 +57,25 @@ TEST_F(ClaimsProgram, MeasuresGiveWhatTheySay) {
   EXPECT_EQ(one("power", "x", b + "values = [9, 3]")["value"], 1.0);
 }
 
+// Runs that are not equally long are compared where both are.
+TEST_F(ClaimsProgram, ListsAreComparedAtThePlacesThatBothCover) {
+  run("1", "a", {{"observed_time_s", 0.6}, {"e", {1.0, 4.0, 9.0}}, {"t", {0.2, 0.4, 0.6}}, {"x", 3.0}});
+  run("2", "b", {{"observed_time_s", 2.0}, {"e", {2.0, 6.0, 10.0, 30.0}}, {"t", {0.3, 0.5, 0.7, 2.0}}, {"x", 2.0}});
+  const std::string b = "at = \"t\"\nagainst_run = \"b\"\nhigh = 70.0\n";
+  EXPECT_DOUBLE_EQ(one("ratio", "e", b)["value"], 9.0 / 8.0);  // b at 0.6 s is halfway between 6 and 10
+  EXPECT_DOUBLE_EQ(one("difference", "e", b)["value"], 1.0);
+  EXPECT_DOUBLE_EQ(one("share_above", "e", b)["value"], 0.5);  // not at 0.4 s: 4 and 4; b does not know 0.2 s
+  EXPECT_DOUBLE_EQ(one("largest_ratio", "e", b)["value"], 9.0 / 8.0);
+  EXPECT_THAT(std::string(one("ratio", "e", b)["how"]), HasSubstr("of a, 0.6 s, against e of b, 2 s"));
+  EXPECT_EQ(one("ratio", "e", "against_run = \"b\"\nhigh = 7.0")["verdict"], "not measured");  // where lists stand is not said
+  EXPECT_THAT(std::string(one("ratio", "e", "at = \"x\"\nagainst_run = \"b\"\nhigh = 7.0")["how"]), HasSubstr("not the ascending places"));
+  EXPECT_THAT(std::string(one("value", "x", "observed_time = \"1 s\"\nhigh = 7.0")["how"]), HasSubstr("0.6 s long, expected at least 1 s"));
+  EXPECT_EQ(one("value", "x", "observed_time = \"0.5 s\"\nhigh = 7.0")["value"], 3.0);
+  const Outcome refused = run_program(claims("[claim.it]\nnumber = 1\nsays = \"it\"\nof = \"x\"\nrun = \"a\"\nmeasure = \"value\"\nat = \"t\"\nlow = 1.0"));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("`at` says where lists of two stand"));
+}
+
 // Places that one run does not know are left out; of vectors the squares of all components count, and one that is unknown makes the vector unknown.
 TEST_F(ClaimsProgram, DifferencesLeaveOutWhatIsUnknown) {
   const json unknown;

@@ -49,7 +49,7 @@ TEST(BladeLoad, SlowInstrumentsShowAShareOfAPulse) {
   EXPECT_NEAR(load.force.filtered, 10 * 1.9805, 1e-9);  // the mean of the last 40 windows
   EXPECT_NEAR(load.force.median, 10.005, 1e-9);
   EXPECT_EQ(load.force.trend, 1);
-  ASSERT_EQ(load.force.medians.size(), BladeLoad::blocks);
+  ASSERT_EQ(load.force.medians.size(), 20u);
   EXPECT_NEAR(load.force.medians[0], 10 * 0.0505, 1e-12);
   EXPECT_NEAR(load.torque.every_step, 0.75, 1e-15);
   EXPECT_NEAR(load.torque.frames, 0.6, 1e-15);
