@@ -25,8 +25,7 @@ struct Run {
   std::string name;
   double record = 0;  // s
   std::uint64_t began = 0;  // jams that began in the record
-  std::vector<jam::Lifetime> lifetimes;
-  std::vector<double> durations;  // s, of jams that began in the record, those that it cuts off as far as it goes
+  std::vector<jam::Lifetime> lifetimes;  // of jams that began in the record
   std::vector<double> peaks;  // N
   std::vector<double> blade_force, blade_torque;  // [frames] N, N m
   double energy = 0;  // J, put in by the blade
@@ -89,7 +88,6 @@ Run read_run(const std::string& path, const CompareOptions& options) {
   if (options.by == CompareBy::step && a.every_step.empty())
     throw jam::DataError(file.string() + ": holds no jams of every step, expected them; --by frame compares those of frames");
   Run run = options.by == CompareBy::step ? of_steps(a, options) : of_frames(a);
-  for (const jam::Lifetime& life : run.lifetimes) run.durations.push_back(life.time);
   for (const jam::FrameSummary& frame : a.frames) {
     if (!std::isnan(frame.blade_force)) run.blade_force.push_back(frame.blade_force);
     if (!std::isnan(frame.blade_torque)) run.blade_torque.push_back(frame.blade_torque);
@@ -206,13 +204,19 @@ constexpr SharedQuantity shared_quantities[] = {
 struct DistributedQuantity {
   const char *name, *unit;
   double scale;
-  std::vector<double> Run::*values;
+  std::vector<double> (*of)(const Run&);
 };
+// s, those that the record cuts off as far as it goes.
+std::vector<double> durations(const Run& run) {
+  std::vector<double> all;
+  for (const jam::Lifetime& life : run.lifetimes) all.push_back(life.time);
+  return all;
+}
 constexpr DistributedQuantity distributed_quantities[] = {
-    {"durations of jams, median", "ms", 1e3, &Run::durations},
-    {"peak forces of jams, median", "N", 1, &Run::peaks},
-    {"torque of the blade at frames, median", "mN m", 1e3, &Run::blade_torque},
-    {"force of the blade at frames, median", "N", 1, &Run::blade_force},
+    {"durations of jams, median", "ms", 1e3, durations},
+    {"peak forces of jams, median", "N", 1, [](const Run& r) { return r.peaks; }},
+    {"torque of the blade at frames, median", "mN m", 1e3, [](const Run& r) { return r.blade_torque; }},
+    {"force of the blade at frames, median", "N", 1, [](const Run& r) { return r.blade_force; }},
 };
 
 struct GroupRow {
@@ -238,7 +242,7 @@ std::vector<GroupRow> compare_groups(const std::vector<Run>& first, const std::v
   for (const DistributedQuantity& q : distributed_quantities) {
     const auto values = [&](const std::vector<Run>& runs) {
       std::vector<std::vector<double>> all;
-      for (const Run& run : runs) all.push_back(run.*q.values);
+      for (const Run& run : runs) all.push_back(q.of(run));
       return all;
     };
     const auto median = [&](const std::vector<std::vector<double>>& all) {
