@@ -1,8 +1,8 @@
-// A running simulation: grains, walls, contacts, stepped by leapfrog (velocity Verlet with half-step velocities, as in
-// Allen and Tildesley, "Computer Simulation of Liquids", section 3.2). Contacts are evaluated at the new positions with the
-// half-step velocities; normal dampers with velocities extrapolated to the same instant as the positions, as a lag of half a step h is
-// an error of first order in h: of the share zeta omega h in the peak force of an impact (zeta: share of critical damping). The same setup and state give the same bytes for any number of threads, and a state taken at any
-// step continues exactly.
+// A running simulation: grains, walls, contacts, stepped by leapfrog (velocity Verlet with half-step velocities, as in Allen and
+// Tildesley, "Computer Simulation of Liquids", section 3.2). Contacts are evaluated at the new positions with the half-step velocities;
+// normal dampers with velocities extrapolated to the same instant as the positions, as a lag of half a step h is an error of first order
+// in h: of the share zeta omega h in the peak force of an impact (zeta: share of critical damping). The same setup and state give the
+// same bytes for any number of threads, and a state taken at any step continues exactly.
 #pragma once
 #include <array>
 #include <limits>
