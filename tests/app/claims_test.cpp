@@ -166,5 +166,15 @@ TEST_F(ClaimsProgram, TheCommittedRunsAreMeasured) {
   EXPECT_GE(measured, 6);
 }
 
+// data/reference/paper/claims.md is what the program prints of the runs beside it.
+TEST_F(ClaimsProgram, TheCommittedTableIsOfTheCommittedRuns) {
+  const std::string data = JAMSCOPE_DATA_DIR;
+  std::string table = run_program("claims " + data + "/reference/paper --claims " + data + "/reference/paper_claims.toml --format markdown").out;
+  for (std::size_t at; (at = table.find(data)) != std::string::npos;) table.replace(at, data.size(), "data");
+  std::ifstream file(data + "/reference/paper/claims.md");
+  EXPECT_EQ(table, std::string(std::istreambuf_iterator<char>(file), {}))
+      << "after new runs or claims: jamscope claims data/reference/paper --claims data/reference/paper_claims.toml --format markdown > data/reference/paper/claims.md";
+}
+
 }  // namespace
 }  // namespace jamscope
