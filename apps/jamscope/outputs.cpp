@@ -201,7 +201,9 @@ Json blade_json(const jam::RunInfo& info, const jam::Analysis& a, const jam::Ser
   std::vector<jam::FrameLoad> frames;
   for (const jam::FrameSummary& frame : a.frames)
     if (std::isfinite(frame.blade_force)) frames.push_back({frame.time, frame.blade_force, frame.blade_torque});
-  const jam::BladeLoad load = jam::blade_load(series, info.walls, frames);
+  const bool newtons = jam::criterion_of(a.criteria).unit == "N";
+  const jam::BladeLoad load =
+      newtons ? jam::blade_load(series, info.walls, frames, a.criteria.jam_force) : jam::blade_load(series, info.walls, frames);
   return {{"filter_s", jam::BladeLoad::filter}, {"force_N", load_json(load.force)}, {"torque_Nm", load_json(load.torque)}};
 }
 

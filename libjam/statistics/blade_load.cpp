@@ -30,9 +30,9 @@ std::vector<double> averaged(std::span<const double> values, std::size_t rows) {
   return means;
 }
 
-// `mean`: of each window, with its sign; `least`, `most`: over its steps, or empty; `at_frames`: magnitudes.
+// `mean`: of each window, with its sign; `least`, `most`: over its steps, or empty; `at_frames`: magnitudes; `peak`: windows left out of the medians.
 LoadPeaks peaks_of(std::span<const double> mean, std::span<const double> least, std::span<const double> most, std::span<const double> at_frames,
-                   std::size_t rows_of_filter, std::size_t rows_of_block) {
+                   const std::vector<bool>& peak, std::size_t rows_of_filter, std::size_t rows_of_block) {
   LoadPeaks peaks;
   std::vector<double> magnitude;
   for (const double value : mean) magnitude.push_back(std::abs(value));
@@ -47,8 +47,12 @@ LoadPeaks peaks_of(std::span<const double> mean, std::span<const double> least, 
   const std::vector<double> slow = averaged(mean, rows_of_filter);
   peaks.filtered = largest(slow);
   peaks.trend = kendall_tau(slow);
-  for (std::size_t k = 0; k + rows_of_block <= magnitude.size(); k += rows_of_block)
-    peaks.medians.push_back(median(std::span(magnitude).subspan(k, rows_of_block)));
+  for (std::size_t begin = 0; begin + rows_of_block <= magnitude.size(); begin += rows_of_block) {
+    std::vector<double> rest;
+    for (std::size_t k = begin; k < begin + rows_of_block; ++k)
+      if (!peak[k]) rest.push_back(magnitude[k]);
+    peaks.medians.push_back(median(rest));
+  }
   return peaks;
 }
 
@@ -60,7 +64,7 @@ std::vector<double> vertical(const std::vector<Vec3>& column) {
 
 }  // namespace
 
-BladeLoad blade_load(const Series& series, const std::vector<Wall>& walls, std::span<const FrameLoad> frames) {
+BladeLoad blade_load(const Series& series, const std::vector<Wall>& walls, std::span<const FrameLoad> frames, double peaks_above) {
   const auto blade = std::find_if(walls.begin(), walls.end(), [](const Wall& w) { return w.role == WallRole::blade; });
   const std::size_t w = std::size_t(blade - walls.begin());
   BladeLoad load;
@@ -75,8 +79,11 @@ BladeLoad blade_load(const Series& series, const std::vector<Wall>& walls, std::
     force_at.push_back(std::abs(frame.force));
     torque_at.push_back(std::abs(frame.torque));
   }
-  load.force = peaks_of(vertical(s.force), vertical(s.force_min), vertical(s.force_max), force_at, of_filter, of_block);
-  load.torque = peaks_of(vertical(s.torque), vertical(s.torque_min), vertical(s.torque_max), torque_at, of_filter, of_block);
+  std::vector<bool> peak(series.size(), false);
+  if (present(series.largest_compressive_force, series.size()))
+    for (std::size_t k = 0; k < series.size(); ++k) peak[k] = double{series.largest_compressive_force[k]} > peaks_above;
+  load.force = peaks_of(vertical(s.force), vertical(s.force_min), vertical(s.force_max), force_at, peak, of_filter, of_block);
+  load.torque = peaks_of(vertical(s.torque), vertical(s.torque_min), vertical(s.torque_max), torque_at, peak, of_filter, of_block);
   return load;
 }
 

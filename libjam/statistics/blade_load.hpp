@@ -1,6 +1,7 @@
 // What an instrument that holds the blade would feel: the vertical force on it and its torque about the vertical, at every step and as slower
 // instruments average them. Jams last micro- to milliseconds: an instrument that exports 25 samples a second shows a share of their peaks.
 #pragma once
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,7 @@ struct LoadPeaks {
   double filtered = 0;             // largest mean over BladeLoad::filter
   double median = 0;               // of the windows' means
   double trend = 0;                // Kendall's tau of the means over BladeLoad::filter against time: 1 where they only grow
-  std::vector<double> medians;     // of the windows' means in each whole BladeLoad::block of the record; none in shorter ones
+  std::vector<double> medians;     // of the windows' means in each whole BladeLoad::block of the record, peaks left out; none in shorter ones
 };
 
 struct BladeLoad {
@@ -31,8 +32,10 @@ struct FrameLoad {
 };
 
 // Of the first wall that is a blade. The series' windows are taken as equally long. Everything is NaN where no wall is a blade, the series is empty or the
-// source does not record the loads of walls.
-BladeLoad blade_load(const Series& series, const std::vector<Wall>& walls, std::span<const FrameLoad> frames);
+// source does not record the loads of walls. `peaks_above`, N: windows in which a grain carries more are left out of `medians` (NaN where none is left);
+// taken as infinite where the series does not say what grains carry.
+BladeLoad blade_load(const Series& series, const std::vector<Wall>& walls, std::span<const FrameLoad> frames,
+                     double peaks_above = std::numeric_limits<double>::infinity());
 
 // Kendall's tau-a of a sequence against its order: (pairs that grow - pairs that fall) / pairs; NaN for fewer than two. Takes n^2/2 comparisons.
 double kendall_tau(std::span<const double> values);

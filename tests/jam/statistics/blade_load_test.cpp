@@ -57,6 +57,21 @@ TEST(BladeLoad, SlowInstrumentsShowAShareOfAPulse) {
   EXPECT_THAT(load.torque.medians, Each(DoubleNear(0.5, 1e-15)));
 }
 
+// Windows in which a grain is jammed make the peaks: without them the median is that of the rest.
+TEST(BladeLoad, MediansLeaveOutWindowsWithAJam) {
+  Series s = pulse();
+  for (std::size_t k = 0; k < s.size(); ++k) s.largest_compressive_force.push_back(k % 100 < 90 && k < 1900 ? 25 : 15);
+  s.largest_compressive_force[1950] = 20;  // not above
+  const BladeLoad all = blade_load(s, blade_and_vessel(), {}), rest = blade_load(s, blade_and_vessel(), {}, 20);
+  EXPECT_NEAR(all.force.medians[0], 10 * 0.0505, 1e-12);
+  EXPECT_NEAR(rest.force.medians[0], 10 * 0.0955, 1e-12);  // windows 91 to 100
+  EXPECT_EQ(rest.force.medians[19], all.force.medians[19]);
+  EXPECT_EQ(rest.force.median, all.force.median);
+  EXPECT_TRUE(std::isnan(blade_load(s, blade_and_vessel(), {}, 10).force.medians[3]));
+  s.largest_compressive_force.clear();
+  EXPECT_EQ(blade_load(s, blade_and_vessel(), {}, 20).force.medians, all.force.medians);
+}
+
 TEST(BladeLoad, IsUnknownWithoutABladeOrItsLoads) {
   std::vector<Wall> none = blade_and_vessel();
   none[1].role = WallRole::other;
