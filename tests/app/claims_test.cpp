@@ -12,6 +12,7 @@
 namespace jamscope {
 namespace {
 
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using nlohmann::json;
 
@@ -151,7 +152,7 @@ TEST_F(ClaimsProgram, ThePapersClaimsAreThere) {
     EXPECT_THAT(run_program("claims " + (folder_ / "runs") + " --claims " JAMSCOPE_DATA_DIR "/reference/paper_claims.toml --format " + format).out, HasSubstr("20 N"));
 }
 
-// What is not measured from the committed runs lacks a run that is still to come.
+// What is not measured from the committed runs lacks a run, or the rest of one, that is still to come.
 TEST_F(ClaimsProgram, TheCommittedRunsAreMeasured) {
   const Outcome outcome =
       run_program("claims " JAMSCOPE_DATA_DIR "/reference/paper --claims " JAMSCOPE_DATA_DIR "/reference/paper_claims.toml --format json");
@@ -161,9 +162,9 @@ TEST_F(ClaimsProgram, TheCommittedRunsAreMeasured) {
     if (row["verdict"] != "not measured")
       ++measured;
     else
-      EXPECT_THAT(row["how"].get<std::string>(), HasSubstr("no run ft4_")) << row["name"];
+      EXPECT_THAT(row["how"].get<std::string>(), AnyOf(HasSubstr("no run ft4_"), HasSubstr("s long, expected at least"))) << row["name"];
   }
-  EXPECT_GE(measured, 6);
+  EXPECT_GE(measured, 29);
 }
 
 // data/reference/paper/claims.md is what the program prints of the runs beside it.
