@@ -239,9 +239,9 @@ std::vector<Claim> read_claims(const std::string& path) {
       if (!c.measure.empty()) document.problem(at + ".measure", fmt::format("no measure '{}'{}", c.measure, suggestion(c.measure, known)));
     } else if (m->two != against) {
       document.problem(at, m->two ? fmt::format("'{}' takes two runs: against_run is missing", c.measure) : fmt::format("'{}' takes one run, not against_run", c.measure));
-    }
-    else if (!c.at.empty() && !m->two)
+    } else if (!c.at.empty() && !m->two) {
       document.problem(at + ".at", fmt::format("'{}' takes one run: `at` says where lists of two stand", c.measure));
+    }
     if (!c.low && !c.high) document.problem(at, "holds always: expected low, high or both");
     if (c.low && c.high && *c.low > *c.high) document.problem(at + ".low", "is above high");
     all.push_back(std::move(c));
