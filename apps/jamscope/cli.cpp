@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <new>
@@ -405,6 +406,8 @@ int run_command_line(int argc, const char* const* argv) {
                "jamscope");
   Options options;
   options.command_line.assign(argv, argv + argc);
+  // Where the program lay says nothing of a run, and may say whose home it was.
+  if (argc > 0) options.command_line[0] = std::filesystem::path(argv[0]).filename().string();
   app.set_version_flag("--version", fmt::format("jamscope {} ({})", version, commit));
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);

@@ -77,6 +77,7 @@ TEST(Analyze, FindsTheJamAndWritesAllResults) {
   EXPECT_EQ(summary["run"]["name"], "small");
   EXPECT_EQ(summary["run"]["creator"], "test");
   EXPECT_EQ(summary["run"]["results_by"]["inputs"][0], scratch / "run.h5");
+  EXPECT_EQ(summary["run"]["results_by"]["command_line"][0], "jamscope");  // and not where it lay
   EXPECT_EQ(summary["analysis"]["criteria"]["jam_force_N"], 10);
   EXPECT_EQ(summary["analysis"]["jams"]["events"], 1);
   EXPECT_EQ(summary["analysis"]["first_events"][0]["samples"], 2);
