@@ -109,6 +109,9 @@ struct WallCandidate {
   static constexpr std::size_t capacity = 8;  // touches of one sphere with one wall; more stop the run
   std::uint32_t particle, wall;
   std::uint32_t part_begin, part_end;  // rows of WallContacts::parts: triangles, glued grains
+  // Those that the grain may touch until the odometer (ForceInput) comes to near_until, m: rows of WallContacts::near_parts from part_begin on.
+  std::uint32_t near_count = 0;
+  double near_until = -std::numeric_limits<double>::infinity();
   // Rows of WallContacts::contact: `size` of them are in use, sorted by feature, and there is room for so many. A wall without
   // parts touches in one place, others in no more places than they have parts here.
   std::uint32_t contact_begin = 0;
@@ -120,7 +123,7 @@ struct WallCandidate {
 struct WallContacts {
   std::vector<WallCandidate> candidate;  // sorted by chunk of the grain, wall, grain
   std::vector<Activity> activity;        // [candidates]
-  std::vector<std::uint32_t> parts;
+  std::vector<std::uint32_t> parts, near_parts;  // of one size
   std::vector<WallContact> contact;
   std::vector<LastForces> last;  // of each contact; empty where no ledger is kept
   // Candidates are handled in chunks of one wall and one chunk of grains, whose loads are added in order.

@@ -526,6 +526,23 @@ double last_overlap(const Law& law, const ForceInput& in, const WallCandidate& c
   return last_overlap(law, most);
 }
 
+// What the grain may touch now, of its candidate parts within `reach`: chosen anew when it may have come nearer by a margin, as few of the
+// many triangles around a grain of a finely meshed wall can be the next that it touches.
+std::span<const std::uint32_t> parts_near(const ForceInput& in, WallContacts& walls, WallCandidate& candidate, const GrainRow& grain,
+                                          double reach) {
+  const std::size_t begin = candidate.part_begin, size = candidate.part_end - begin;
+  const std::span<const std::uint32_t> all = std::span(walls.parts).subspan(begin, size);
+  const double margin = 0.25 * walls.skin;
+  if (size < 3 || margin < 2 * in.foresight) return all;
+  const std::span<std::uint32_t> chosen = std::span(walls.near_parts).subspan(begin, size);
+  if (!(in.odometer + in.foresight < candidate.near_until)) {
+    candidate.near_count = std::uint32_t(
+        parts_within(in.walls[candidate.wall], in.poses[candidate.wall], grain.position(), reach + margin, all, chosen));
+    candidate.near_until = in.odometer + cautious * margin;
+  }
+  return chosen.first(candidate.near_count);
+}
+
 struct WallSlot {
   WallCandidate* candidate;
   WallContact* contact;
@@ -684,9 +701,10 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
     // Where nothing is near, look as far as the list does, to know for how long.
     const double reach = grain.radius() - last_overlap(law, in, candidate);
     const double sight = away ? std::max(grain.radius() + walls.skin, reach) : reach;
-    nearest(wall, pose, grain.position(), sight,
-            std::span(walls.parts).subspan(candidate.part_begin, candidate.part_end - candidate.part_begin),
-            touches, chunk.scratch);
+    const std::span<const std::uint32_t> parts =
+        away ? std::span<const std::uint32_t>(walls.parts).subspan(candidate.part_begin, candidate.part_end - candidate.part_begin)
+             : parts_near(in, walls, candidate, grain, reach);
+    nearest(wall, pose, grain.position(), sight, parts, touches, chunk.scratch);
     if (away) {
       double gap = sight - reach, speed = 0;
       for (const WallTouch& touch : touches) {

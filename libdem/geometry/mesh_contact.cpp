@@ -26,6 +26,16 @@ struct Face {
   double side1_offset;         // (corner 1 - corner 0) . inward[1]; sides 0 and 2 pass through corner 0
   // The edges and vertices that are tested with this face: each once, with the smallest of its faces.
   std::array<std::uint32_t, 3> edges, vertices;
+
+  double side_distance(const Vec3& from_corner) const {  // m, to the nearest side, < 0 beyond it
+    return std::min({inward[0].dot(from_corner), inward[1].dot(from_corner) - side1_offset, inward[2].dot(from_corner)});
+  }
+  // m^2; beyond a side the triangle is at least as far in its plane as the side's line is.
+  double squared_distance_at_least(const Vec3& x) const {
+    const Vec3 from_corner = x - corner;
+    const double height = normal.dot(from_corner), aside = std::min(side_distance(from_corner), 0.0);
+    return height * height + aside * aside;
+  }
 };
 
 struct Edge {
@@ -187,15 +197,19 @@ void MeshContactFinder::candidate_triangles(const Vec3& centre, double reach, st
   const double margin = reach * (1 + 1e-9) + impl_->tie;
   const auto first = static_cast<std::ptrdiff_t>(out.size());
   impl_->tree.triangles_in_box(centre.array() - margin, centre.array() + margin, out);
-  // The box holds slanted triangles that the sphere cannot touch: drop those beyond it on one side or above or below.
-  const auto out_of_reach = [&](std::uint32_t f) {
-    const Face& face = impl_->faces[f];
-    const Vec3 r = centre - face.corner;
-    return std::abs(face.normal.dot(r)) > margin || face.inward[0].dot(r) < -margin ||
-           face.inward[1].dot(r) - face.side1_offset < -margin || face.inward[2].dot(r) < -margin;
-  };
-  out.erase(std::remove_if(out.begin() + first, out.end(), out_of_reach), out.end());
+  // The box holds slanted triangles that the sphere cannot touch.
+  const auto beyond = [&](std::uint32_t f) { return impl_->faces[f].squared_distance_at_least(centre) > margin * margin; };
+  out.erase(std::remove_if(out.begin() + first, out.end(), beyond), out.end());
   std::sort(out.begin() + first, out.end());
+}
+
+std::size_t MeshContactFinder::triangles_within(const Vec3& centre, double reach, std::span<const std::uint32_t> candidates,
+                                                std::span<std::uint32_t> out) const {
+  const double margin = reach * (1 + 1e-9) + impl_->tie;
+  std::size_t count = 0;
+  for (const std::uint32_t f : candidates)
+    if (impl_->faces[f].squared_distance_at_least(centre) <= margin * margin) out[count++] = f;
+  return count;
 }
 
 void MeshContactFinder::touches(const Vec3& centre, double reach, std::span<const std::uint32_t> candidates,
@@ -207,8 +221,7 @@ void MeshContactFinder::touches(const Vec3& centre, double reach, std::span<cons
     const Vec3 r = centre - face.corner;
     const double height = face.normal.dot(r);
     if (std::abs(height) > reach) continue;
-    const double nearest_side =
-        std::min({face.inward[0].dot(r), face.inward[1].dot(r) - face.side1_offset, face.inward[2].dot(r)});
+    const double nearest_side = face.side_distance(r);
     if (nearest_side < -reach) continue;
     if (height >= 0 && nearest_side >= -tie) impl_->touch_face(f, centre, height, out);
     for (const std::uint32_t e : face.edges)

@@ -49,6 +49,11 @@ class MeshContactFinder {
   // Triangles whose distance to `centre` is at most `reach` (a superset is allowed), ascending. Appends to `out`.
   void candidate_triangles(const Vec3& centre, double reach, std::vector<std::uint32_t>& out) const;
 
+  // Those of `candidates` whose distance to `centre` is at most `reach` (a superset is allowed), in their order: written to `out`, which
+  // has room for all. Returns how many.
+  std::size_t triangles_within(const Vec3& centre, double reach, std::span<const std::uint32_t> candidates,
+                               std::span<std::uint32_t> out) const;
+
   // Touches with distance <= reach among `candidates`, which must contain every triangle within `reach`, each once.
   // Sorted by (feature, feature_id). Clears `out` first. Safe to call from several threads; allocates only when `out`
   // must grow. Where features tie to within rounding, the face is taken before the edge before the vertex, then the

@@ -134,6 +134,24 @@ void find_parts(const MeshWall& mesh, const Vec3& centre, double reach, std::vec
   mesh.finder->candidate_triangles(centre, reach, out);
 }
 
+template <class Shape>
+std::size_t keep_parts(const Shape&, const Vec3&, double, std::span<const std::uint32_t>, std::span<std::uint32_t>) {
+  return 0;
+}
+std::size_t keep_parts(const GluedGrains& glued, const Vec3& centre, double reach, std::span<const std::uint32_t> parts,
+                       std::span<std::uint32_t> out) {
+  std::size_t count = 0;
+  for (const std::uint32_t k : parts) {
+    const double far = reach + glued.spheres->radii()[k];
+    if (!((glued.spheres->centres()[k] - centre).squaredNorm() > far * far)) out[count++] = k;
+  }
+  return count;
+}
+std::size_t keep_parts(const MeshWall& mesh, const Vec3& centre, double reach, std::span<const std::uint32_t> parts,
+                       std::span<std::uint32_t> out) {
+  return mesh.finder->triangles_within(centre, reach, parts, out);
+}
+
 bool is_near(const Plane& plane, const Vec3& centre, double reach) {
   return (centre - plane.point).dot(plane.normal) <= reach;
 }
@@ -331,6 +349,12 @@ void candidate_parts(const Wall& wall, const WallPose& pose, const Vec3& centre,
                      std::vector<std::uint32_t>& out) {
   const Vec3 body = pose.rotation.transpose() * (centre - pose.position);
   std::visit([&](const auto& shape) { find_parts(shape, body, reach, out); }, wall.shape);
+}
+
+std::size_t parts_within(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach, std::span<const std::uint32_t> parts,
+                         std::span<std::uint32_t> out) {
+  const Vec3 body = pose.rotation.transpose() * (centre - pose.position);
+  return std::visit([&](const auto& shape) { return keep_parts(shape, body, reach, parts, out); }, wall.shape);
 }
 
 bool near(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach) {

@@ -106,6 +106,11 @@ double largest_speed(const Wall& wall);
 void candidate_parts(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach,
                      std::vector<std::uint32_t>& out);
 
+// Those of `parts` that are within `reach` of the point (a superset is allowed), in their order: written to `out`, which has room for all.
+// Returns how many.
+std::size_t parts_within(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach, std::span<const std::uint32_t> parts,
+                         std::span<std::uint32_t> out);
+
 // Is the wall within `reach` of the point? May say yes too often for meshes (their candidate parts decide).
 bool near(const Wall& wall, const WallPose& pose, const Vec3& centre, double reach);
 

@@ -183,6 +183,7 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
   }
   if (remembered != memory.wall_pairs.size())
     throw CaseError("the stored state has a contact with a wall that is not there");
+  fresh.near_parts.resize(fresh.parts.size());
   return fresh;
 }
 

@@ -61,6 +61,40 @@ TEST(WallShapes, TheNearestTouchIsTheNearestPointOfTheSurface) {
   }
 }
 
+// What is left of the parts around a point is all that a sphere can touch that has moved as far from there as was asked for.
+TEST(WallShapes, PartsWithinAMoveAreAllThatIsTouchedAfterIt) {
+  std::mt19937_64 rng(8);
+  for (const WallSample& sample : wall_samples()) {
+    const Wall wall{sample.name, 0, sample.shape, {}};
+    std::size_t known = 0, kept = 0, touched = 0;
+    for (int k = 0; k < 2000; ++k) {
+      const WallPose pose = random_pose(rng);
+      const Vec3 before = to_lab(pose, random_centre(sample, reach, rng));
+      const double move = uniform(rng, 0, reach), from = uniform(rng, 0.2, 1) * reach;
+      std::vector<std::uint32_t> parts, few;
+      candidate_parts(wall, pose, before, 2 * reach, parts);
+      few.resize(parts.size());
+      few.resize(parts_within(wall, pose, before, from + move, parts, few));
+      const Vec3 after = before + uniform(rng, 0, 1) * move * random_direction(rng);
+      std::vector<WallTouch> of_all, of_few;
+      std::vector<MeshTouch> scratch;
+      nearest(wall, pose, after, from, parts, of_all, scratch);
+      nearest(wall, pose, after, from, few, of_few, scratch);
+      ASSERT_EQ(of_few.size(), of_all.size()) << sample.name;
+      for (std::size_t t = 0; t < of_all.size(); ++t) {
+        EXPECT_EQ(of_few[t].feature, of_all[t].feature) << sample.name;
+        EXPECT_EQ(of_few[t].distance, of_all[t].distance) << sample.name;
+        EXPECT_EQ(of_few[t].normal, of_all[t].normal) << sample.name;
+      }
+      known += parts.size(), kept += few.size(), touched += of_all.size();
+    }
+    EXPECT_GT(touched, 500u) << sample.name;
+    if (known > 0) {
+      EXPECT_LT(double(kept), 0.8 * double(known)) << sample.name;
+    }
+  }
+}
+
 // d(distance)/d(centre) = -normal: touches are extremal.
 TEST(WallShapes, TheNormalIsTheGradientOfTheDistance) {
   std::mt19937_64 rng(2);
