@@ -59,14 +59,14 @@ struct PairContacts {
     std::uint32_t material_pair = 0;  // index into MaterialTable::pair, of all lanes
     std::uint32_t crossing = 0;       // first row of PairContacts::crossing, of a block whose pairs cross chunks
   };
-  std::vector<Block> block;
+  LargeArray<Block> block;
   std::vector<Activity> activity;             // [blocks]
   std::vector<Kind> kind;                     // [blocks]
   std::vector<std::uint64_t> birth_step;      // [lanes]
   std::vector<RollingSprings> rolling;        // [blocks] empty where the law has none
   std::vector<LastForces> last;               // [lanes] empty where no ledger is kept
   // Of pairs whose second grain belongs to another chunk: what acts on it. And for each chunk which those are.
-  std::vector<ForceRow> crossing;
+  LargeArray<ForceRow> crossing;
   struct Incoming {
     std::uint32_t row, crossing, block;
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <thread>
 
 #include "libdem/contact/rows.hpp"
@@ -211,7 +212,8 @@ void ask(const Block& block, std::uint8_t level, bool crosses, const ForceOutput
 // Level of the finest of grains with these 2^-level; none of phantoms.
 inline std::uint8_t finest_of(const ForceInput& in, const Pack& per_stride) {
   const double most = std::experimental::hmax(per_stride);
-  return most > 0 ? std::uint8_t(-std::ilogb(most)) : in.highest;
+  constexpr int bias = 1023, fraction_bits = 52;  // of IEEE 754's double; the fraction of a power of two is 0
+  return most > 0 ? std::uint8_t(bias - int(std::bit_cast<std::uint64_t>(most) >> fraction_bits)) : in.highest;
 }
 
 struct Approach {

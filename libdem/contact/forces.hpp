@@ -8,7 +8,7 @@
 namespace dem {
 
 struct ForceInput {
-  const std::vector<GrainRow>& grains;  // and the phantoms behind them
+  const LargeArray<GrainRow>& grains;  // and the phantoms behind them
   const MaterialTable& materials;
   const std::vector<Wall>& walls;
   const std::vector<WallPose>& poses;  // [walls]
@@ -23,12 +23,12 @@ struct ForceInput {
   double foresight = 0;                          // m, by how much more the odometer may grow until all levels are due again
   const std::vector<double>& jolt;               // [chunks] m/s, by how much two grains' speeds may change until then
   const std::vector<std::uint8_t>& level;        // [N] of the grains until now
-  const std::vector<Vec4>& spun;                 // rad/s, half of the last change of each grain's spin, and the phantoms'
+  const LargeArray<Vec4>& spun;                 // rad/s, half of the last change of each grain's spin, and the phantoms'
   const std::vector<std::uint32_t>& due_chunks;  // that have such a grain
 };
 
 struct ForceOutput {
-  std::vector<ForceRow>& forces;     // and the phantoms'
+  LargeArray<ForceRow>& forces;     // and the phantoms'
   std::vector<std::uint8_t>& asked;  // [N], the finest level that an evaluated contact asks of the grain; and the phantoms'
 };
 

@@ -18,15 +18,20 @@ std::uint32_t material_pair(const GrainTable& grains, std::size_t materials, std
 }
 
 struct Pair {
-  bool crosses;
-  std::uint32_t material_pair;
-  bool apart;
-  std::uint8_t level;  // 0 where they are apart
-  double gap;          // m, 0 where they touch
+  std::uint32_t kind;  // those of one kind share blocks
   std::uint32_t i, j;
-  auto kind() const { return std::tie(crosses, material_pair, apart, level); }
-  auto key() const { return std::tie(crosses, material_pair, apart, level, gap, i, j); }
+  double gap;          // m, 0 where they touch
 };
+bool operator<(const Pair& a, const Pair& b) {
+  if (a.kind != b.kind) return a.kind < b.kind;
+  if (a.gap != b.gap) return a.gap < b.gap;
+  return std::tie(a.i, a.j) < std::tie(b.i, b.j);
+}
+
+// In the order of the blocks: by crossing, pair of materials, whether they touch, level.
+std::uint32_t kind_of(bool crosses, std::uint32_t material_pair, const std::optional<std::uint8_t>& level) {
+  return std::uint32_t(crosses) << 31 | material_pair << 9 | std::uint32_t(!level) << 8 | level.value_or(0);
+}
 
 }  // namespace
 
@@ -40,18 +45,17 @@ Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t ma
     for (std::uint32_t s = list.begin[c * chunk_rows]; s < list.begin[end]; ++s) {
       const std::uint32_t i = list.first[s], j = list.second[s];
       const std::optional<std::uint8_t> touches = level(i, j);
-      const bool apart = !touches;
       const GrainRow &a = grains.rows[i], &b = grains.rows[j];
-      const double gap = apart ? (a.position() - b.position()).norm() - a.radius() - b.radius() : 0;
-      pairs.push_back({chunk_of(j) != c, material_pair(grains, materials, i, j), apart, touches.value_or(0), gap, i, j});
+      const double gap = touches ? 0 : (a.position() - b.position()).norm() - a.radius() - b.radius();
+      pairs.push_back({kind_of(chunk_of(j) != c, material_pair(grains, materials, i, j), touches), i, j, gap});
     }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.key() < b.key(); });
+    std::sort(pairs.begin(), pairs.end());
     Lanes& lanes = of_chunk[c];
     const auto fill_up = [&] {
       while (lanes.size() % width != 0) lanes.push_back({lanes.back()[0], std::uint32_t(grains.size() + c)});
     };
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-      if (k > 0 && pairs[k].kind() != pairs[k - 1].kind()) fill_up();
+      if (k > 0 && pairs[k].kind != pairs[k - 1].kind) fill_up();
       lanes.push_back({pairs[k].i, pairs[k].j});
     }
     fill_up();
@@ -84,16 +88,19 @@ bool fit(const Lanes& lanes, const GrainTable& grains) {
 }
 
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
-                                const Resolution& resolution, bool rolling_spring, bool keep_ledger) {
-  PairContacts pairs;
+                                const Resolution& resolution, bool rolling_spring, bool keep_ledger, PairContacts pairs) {
   const std::size_t blocks = lanes.size() / width, chunks = chunks_of(grains.size());
+  if (pairs.block.capacity() < blocks) {
+    pairs.block = {};
+    pairs.block.reserve(blocks + blocks / 16);
+  }
   pairs.block.resize(blocks);
-  pairs.activity.resize(blocks);
-  pairs.kind.resize(blocks);
+  pairs.activity.assign(blocks, {});
+  pairs.kind.assign(blocks, {});
   pairs.birth_step.assign(lanes.size(), 0);
-  if (rolling_spring) pairs.rolling.resize(blocks);
-  if (keep_ledger) pairs.last.resize(lanes.size());
-  pairs.chunk.resize(chunks);
+  pairs.rolling.assign(rolling_spring ? blocks : 0, {});
+  pairs.last.assign(keep_ledger ? lanes.size() : 0, {});
+  pairs.chunk.assign(chunks, {});
 
   std::uint32_t crossing = 0;
   std::size_t at = 0;
@@ -113,7 +120,7 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
     }
     chunk.end = std::uint32_t(at);
   }
-  pairs.crossing.resize(crossing);
+  pairs.crossing.assign(crossing, {});
   for (std::size_t c = 0; c < chunks; ++c) {
     incoming[c + 1] += incoming[c];
     pairs.chunk[c].incoming_begin = incoming[c];
@@ -132,6 +139,8 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
 #pragma omp parallel for schedule(static)
   for (std::size_t b = 0; b < blocks; ++b) {
     PairContacts::Block& block = pairs.block[b];
+    block.spring = {};
+    block.contact_radius = {};
     const auto body = [&](std::uint32_t i) {
       return BodyConstants{grains.rows[i].radius(), grains.mass[i], grains.inertia[i]};
     };

@@ -11,7 +11,7 @@ namespace dem {
 
 // The grains as the blocks need them, in the order of their rows.
 struct GrainTable {
-  const std::vector<GrainRow>& rows;  // and the phantoms behind them
+  const LargeArray<GrainRow>& rows;  // and the phantoms behind them
   const std::vector<std::uint8_t>& material;
   const std::vector<double>& mass;     // kg
   const std::vector<double>& inertia;  // kg m^2
@@ -30,8 +30,8 @@ Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t ma
 // Are these lanes such as order_lanes() makes, whatever the order of the pairs within a kind and whatever touches?
 bool fit(const Lanes& lanes, const GrainTable& grains);
 
-// Blocks of such lanes, without memory. Condition: they fit.
+// Blocks of such lanes, without memory. Condition: they fit. `used` are blocks that nobody needs any longer: their room is taken.
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
-                                const Resolution& resolution, bool rolling_spring, bool keep_ledger);
+                                const Resolution& resolution, bool rolling_spring, bool keep_ledger, PairContacts used = {});
 
 }  // namespace dem

@@ -164,8 +164,7 @@ bool is_near(const GluedGrains& glued, const Vec3& centre, double reach) {
   return glued.spheres->any_within(centre, reach);
 }
 bool is_near(const MeshWall& mesh, const Vec3& centre, double reach) {
-  const double far = mesh.reach + reach;
-  return centre.squaredNorm() <= far * far;
+  return mesh.box.squaredExteriorDistance(centre) <= reach * reach;
 }
 
 // --- material ---
@@ -200,7 +199,7 @@ bool fills(const GluedGrains& glued, const Vec3& x) {
   return glued.spheres->any_within(x, 0);
 }
 bool fills(const MeshWall& mesh, const Vec3& x) {
-  return x.norm() <= mesh.reach && winding_number(mesh.finder->mesh(), x) > 0.5;
+  return mesh.box.contains(x) && winding_number(mesh.finder->mesh(), x) > 0.5;
 }
 
 // --- speed ---
@@ -306,9 +305,9 @@ GluedGrains make_glued_grains(std::vector<Vec3> centres, std::vector<double> rad
 }
 
 MeshWall make_mesh_wall(TriangleMesh mesh) {
-  double reach = 0;
-  for (const Vec3& v : mesh.vertices) reach = std::max(reach, v.norm());
-  return {std::make_shared<const MeshContactFinder>(std::move(mesh)), reach};
+  Eigen::AlignedBox3d box;
+  for (const Vec3& v : mesh.vertices) box.extend(v);
+  return {std::make_shared<const MeshContactFinder>(std::move(mesh)), box};
 }
 
 void validate_wall(const Wall& wall) {

@@ -76,7 +76,7 @@ GluedGrains make_glued_grains(std::vector<Vec3> centres, std::vector<double> rad
 // Feature: (kind << 32) | number of the triangle, edge or vertex.
 struct MeshWall {
   std::shared_ptr<const MeshContactFinder> finder;  // body frame
-  double reach = 0;                                 // m, largest distance of a vertex from the body frame's origin
+  Eigen::AlignedBox3d box;                          // m, around its vertices, body frame
 };
 MeshWall make_mesh_wall(TriangleMesh mesh);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <experimental/simd>
 #include <limits>
 #include <numeric>
 
@@ -61,6 +62,37 @@ Grid make_grid(const std::vector<Vec3>& position, double edge) {
   return grid;
 }
 
+using Pack = std::experimental::native_simd<double>;
+
+// Column by column, so that a pack of them is looked at at once; the last pack is filled up.
+struct Spheres {
+  std::vector<double> x, y, z, radius;
+  explicit Spheres(std::size_t n) : x(n + Pack::size()), y(x), z(x), radius(x) {}
+  void set(std::size_t m, const Vec3& centre, double r) {
+    x[m] = centre.x();
+    y[m] = centre.y();
+    z[m] = centre.z();
+    radius[m] = r;
+  }
+
+  // Those in [begin, end) that are not larger than a sphere and whose surface is less than `skin` from its own.
+  template <class Found>
+  void smaller_near(std::size_t begin, std::size_t end, const Vec3& centre, double own, double skin, Found found) const {
+    constexpr std::experimental::element_aligned_tag anywhere;
+    const Pack cx = centre.x(), cy = centre.y(), cz = centre.z();
+    for (std::size_t m = begin; m < end; m += Pack::size()) {
+      const Pack dx = cx - Pack(&x[m], anywhere), dy = cy - Pack(&y[m], anywhere), dz = cz - Pack(&z[m], anywhere);
+      const Pack r(&radius[m], anywhere), reach = own + r + skin;
+      auto near = r <= own && dx * dx + dy * dy + dz * dz < reach * reach;
+      while (any_of(near)) {
+        const int k = find_first_set(near);
+        near[std::size_t(k)] = false;
+        if (m + std::size_t(k) < end) found(m + std::size_t(k));
+      }
+    }
+  }
+};
+
 }  // namespace
 
 PairList build_pair_list(const std::vector<Vec3>& position, const std::vector<double>& radius, double skin) {
@@ -72,30 +104,31 @@ PairList build_pair_list(const std::vector<Vec3>& position, const std::vector<do
   const double mean = std::accumulate(radius.begin(), radius.end(), 0.0) / double(n);
   const Grid grid = make_grid(position, 2 * std::min(largest, many_sizes * mean) + skin);
 
-  // The larger grain of a pair looks for the smaller one, as far as its own size needs: a few large grains among small ones cost
-  // no more than the small ones that they touch.
+  // Cell by cell, so that the cells of a row are one stretch of memory. The larger grain of a pair looks for the smaller one, as far as
+  // its own size needs: a few large grains among small ones cost no more than the small ones that they touch.
+  Spheres spheres(n);
+  for (std::size_t m = 0; m < n; ++m) spheres.set(m, position[grid.member[m]], radius[grid.member[m]]);
+
   constexpr std::size_t rows = 256;  // are handled together
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> found((n + rows - 1) / rows);
 #pragma omp parallel for schedule(static)
-  for (std::size_t r = 0; r < found.size(); ++r)
-    for (std::size_t i = r * rows; i < std::min((r + 1) * rows, n); ++i) {
+  for (std::size_t part = 0; part < found.size(); ++part) {
+    for (std::size_t i = part * rows; i < std::min((part + 1) * rows, n); ++i) {
       const Cell c = grid.cell_of(position[i]);
       const std::int64_t reach = std::max<std::int64_t>(1, std::int64_t(std::ceil((2 * radius[i] + skin) / grid.edge)));
       const auto low = [&](std::size_t k) { return std::max<std::int64_t>(c[k] - reach, 0); };
       const auto high = [&](std::size_t k) { return std::min(c[k] + reach, grid.cells[k] - 1); };
       for (std::int64_t z = low(2); z <= high(2); ++z)
-        for (std::int64_t y = low(1); y <= high(1); ++y)
-          for (std::int64_t x = low(0); x <= high(0); ++x) {
-            const std::size_t k = grid.index({x, y, z});
-            for (std::uint32_t m = grid.begin[k]; m < grid.begin[k + 1]; ++m) {
-              const std::uint32_t j = grid.member[m];
-              if (radius[j] > radius[i] || (radius[j] == radius[i] && j <= i)) continue;
-              const double near = radius[i] + radius[j] + skin;
-              if ((position[i] - position[j]).squaredNorm() >= near * near) continue;
-              found[r].emplace_back(std::min(std::uint32_t(i), j), std::max(std::uint32_t(i), j));
-            }
-          }
+        for (std::int64_t y = low(1); y <= high(1); ++y) {
+          const std::uint32_t begin = grid.begin[grid.index({low(0), y, z})], end = grid.begin[grid.index({high(0), y, z}) + 1];
+          spheres.smaller_near(begin, end, position[i], radius[i], skin, [&](std::size_t m) {
+            const std::uint32_t j = grid.member[m];
+            if (radius[j] == radius[i] && j <= i) return;
+            found[part].emplace_back(std::min(std::uint32_t(i), j), std::max(std::uint32_t(i), j));
+          });
+        }
     }
+  }
 
   for (const auto& pairs : found)
     for (const auto& [i, j] : pairs) ++list.begin[i + 1];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libdem/case/case.hpp"
+#include "libdem/particles/large_pages.hpp"
 
 namespace dem {
 

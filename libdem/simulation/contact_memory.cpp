@@ -1,6 +1,7 @@
 #include "libdem/simulation/contact_memory.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <numeric>
 #include <tuple>
 
@@ -35,13 +36,21 @@ std::vector<std::uint32_t> first_of_rows(const Pairs& pairs, std::size_t n) {
   return begin;
 }
 
-// The row in memory.pairs of a pair of the caller's rows, or -1.
-std::int64_t find(const Memory& memory, const std::vector<std::uint32_t>& begin, std::uint32_t i, std::uint32_t j) {
-  const auto [a, b] = std::minmax(i, j);
-  for (std::uint32_t k = begin[a]; k < begin[a + 1]; ++k)
-    if (memory.pairs[k].j == b) return k;
-  return -1;
-}
+// Where in memory.pairs a pair of the caller's rows is.
+struct PairIndex {
+  std::vector<std::uint32_t> begin, larger;  // [N+1] as above, [P] the larger row of each
+
+  explicit PairIndex(const Memory& memory, std::size_t n) : begin(first_of_rows(memory.pairs, n)) {
+    for (const State::Pair& c : memory.pairs) larger.push_back(c.j);
+  }
+  // -1 where there is none.
+  std::int64_t find(std::uint32_t i, std::uint32_t j) const {
+    const auto [a, b] = std::minmax(i, j);
+    for (std::uint32_t k = begin[a]; k < begin[a + 1]; ++k)
+      if (larger[k] == b) return k;
+    return -1;
+  }
+};
 
 bool has_rolling_spring(const LawChoice& law) {
   return with_part<RollingLaws>(law.rolling, [](auto part) { return part.has_spring; });
@@ -77,27 +86,29 @@ Lanes list_pairs(const ListInput& in, const GrainStore& grains, const Memory& me
     position[r] = grains.rows[r].position();
     radius[r] = grains.rows[r].radius();
   }
-  const std::vector<std::uint32_t> begin = first_of_rows(memory.pairs, n);
+  const PairIndex index(memory, n);
   const auto level = [&](std::uint32_t i, std::uint32_t j) -> std::optional<std::uint8_t> {
-    const std::int64_t known = find(memory, begin, grains.order[i], grains.order[j]);
+    const std::int64_t known = index.find(grains.order[i], grains.order[j]);
     if (known < 0) return std::nullopt;
     return memory.pairs[std::size_t(known)].level;
   };
   return order_lanes(build_pair_list(position, radius, in.skin), grains.table(), in.materials.size, level);
 }
 
-PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const GrainStore& grains, const Memory& memory) {
+PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const GrainStore& grains, const Memory& memory,
+                                PairContacts used) {
   const bool rolling_spring = has_rolling_spring(in.setup.law), keep_ledger = in.setup.keep_ledger;
   const std::vector<std::uint32_t>& order = grains.order;
-  const std::vector<std::uint32_t> begin = first_of_rows(memory.pairs, grains.size());
-  PairContacts pairs = make_pair_contacts(lanes, grains.table(), in.materials, in.setup.resolution(), rolling_spring, keep_ledger);
+  const PairIndex index(memory, grains.size());
+  PairContacts pairs = make_pair_contacts(lanes, grains.table(), in.materials, in.setup.resolution(), rolling_spring, keep_ledger,
+                                          std::move(used));
   std::size_t remembered = 0;
 #pragma omp parallel for schedule(static) reduction(+ : remembered)
   for (std::size_t b = 0; b < pairs.block.size(); ++b)
     for (std::size_t k = 0; k < PairContacts::width; ++k) {
       PairContacts::Block& block = pairs.block[b];
       if (block.second[k] >= grains.size()) continue;
-      const std::int64_t known = find(memory, begin, order[block.first[k]], order[block.second[k]]);
+      const std::int64_t known = index.find(order[block.first[k]], order[block.second[k]]);
       if (known < 0) continue;
       const State::Pair& kept = memory.pairs[std::size_t(known)];
       const bool turned = order[block.first[k]] != kept.i;
@@ -122,69 +133,107 @@ PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const G
   return pairs;
 }
 
-WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, const Memory& memory) {
+namespace {
+
+// Of the grains of one chunk; rows of contacts, parts and candidates count from its own first.
+WallContacts wall_contacts_of_chunk(const ListInput& in, const GrainStore& grains, const Memory& memory,
+                                    const std::vector<std::uint32_t>& begin, std::size_t number) {
   const Setup& setup = in.setup;
-  const double skin = in.skin;
-  const std::size_t n = grains.size(), chunks = chunks_of(n);
   WallContacts fresh;
-  fresh.skin = skin;
-  fresh.chunk_begin.assign(1, 0);
-  const std::vector<std::uint32_t> begin = first_of_rows(memory.wall_pairs, n);
-  std::size_t remembered = 0;
-  for (std::size_t number = 0; number < chunks; ++number) {
-    for (std::uint32_t w = 0; w < setup.walls.size(); ++w) {
-      const std::uint32_t first = std::uint32_t(fresh.candidate.size());
-      for (std::size_t r = number * chunk_rows; r < std::min((number + 1) * chunk_rows, n); ++r) {
-        const std::uint32_t i = grains.order[r];
-        WallCandidate c{};
-        Activity activity;
-        c.contact_begin = std::uint32_t(fresh.contact.size());
-        for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
-          const State::WallPair& kept = memory.wall_pairs[k];
-          if (kept.wall != w) continue;
-          if (c.size == WallCandidate::capacity) throw CaseError("the stored state has a contact with a wall that is not there");
-          ++c.size;
-          WallContact& contact = fresh.contact.emplace_back();
-          contact.touch.feature = kept.feature;
-          contact.touch.normal = kept.normal;
-          contact.touch.distance = kept.distance;
-          contact.touch.curvature = kept.curvature;
-          contact.memory = {kept.spring, kept.contact_radius, kept.birth_step};
-          contact.rolling = kept.rolling;
-          if (setup.keep_ledger) fresh.last.push_back(memory.wall_last[k]);
-          activity = {true, false, kept.level};
-          ++remembered;
-        }
-        const double reach = grains.rows[r].radius() + skin;
-        if (c.size == 0 && !near(setup.walls[w], in.poses[w], grains.rows[r].position(), reach)) continue;
-        c.particle = std::uint32_t(r);
-        c.wall = w;
-        c.part_begin = std::uint32_t(fresh.parts.size());
-        candidate_parts(setup.walls[w], in.poses[w], grains.rows[r].position(), reach, fresh.parts);
-        c.part_end = std::uint32_t(fresh.parts.size());
-        if (c.size == 0 && std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
-        const std::size_t places = std::min<std::size_t>(c.part_end - c.part_begin, WallCandidate::capacity);
-        c.room = std::max(c.size, std::uint16_t(std::max<std::size_t>(places, 1)));
-        fresh.contact.resize(c.contact_begin + c.room);
-        if (setup.keep_ledger) fresh.last.resize(fresh.contact.size());
-        c.constants = wall_constants(in.materials(grains.material[r], setup.walls[w].material),
-                                     {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
-        c.scale = level_scale(c.constants, setup.resolution());
-        fresh.candidate.push_back(c);
-        fresh.activity.push_back(activity);
+  for (std::uint32_t w = 0; w < setup.walls.size(); ++w) {
+    const std::uint32_t first = std::uint32_t(fresh.candidate.size());
+    for (std::size_t r = number * chunk_rows; r < std::min((number + 1) * chunk_rows, grains.size()); ++r) {
+      const std::uint32_t i = grains.order[r];
+      WallCandidate c{};
+      Activity activity;
+      c.contact_begin = std::uint32_t(fresh.contact.size());
+      for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
+        const State::WallPair& kept = memory.wall_pairs[k];
+        if (kept.wall != w) continue;
+        if (c.size == WallCandidate::capacity) throw CaseError("the stored state has a contact with a wall that is not there");
+        ++c.size;
+        WallContact& contact = fresh.contact.emplace_back();
+        contact.touch.feature = kept.feature;
+        contact.touch.normal = kept.normal;
+        contact.touch.distance = kept.distance;
+        contact.touch.curvature = kept.curvature;
+        contact.memory = {kept.spring, kept.contact_radius, kept.birth_step};
+        contact.rolling = kept.rolling;
+        if (setup.keep_ledger) fresh.last.push_back(memory.wall_last[k]);
+        activity = {true, false, kept.level};
       }
-      if (first == fresh.candidate.size()) continue;
-      fresh.chunk.emplace_back();
-      fresh.chunk.back().wall = w;
-      fresh.chunk.back().begin = first;
-      fresh.chunk.back().end = std::uint32_t(fresh.candidate.size());
+      const double reach = grains.rows[r].radius() + in.skin;
+      if (c.size == 0 && !near(setup.walls[w], in.poses[w], grains.rows[r].position(), reach)) continue;
+      c.particle = std::uint32_t(r);
+      c.wall = w;
+      c.part_begin = std::uint32_t(fresh.parts.size());
+      candidate_parts(setup.walls[w], in.poses[w], grains.rows[r].position(), reach, fresh.parts);
+      c.part_end = std::uint32_t(fresh.parts.size());
+      if (c.size == 0 && std::holds_alternative<MeshWall>(setup.walls[w].shape) && c.part_begin == c.part_end) continue;
+      const std::size_t places = std::min<std::size_t>(c.part_end - c.part_begin, WallCandidate::capacity);
+      c.room = std::max(c.size, std::uint16_t(std::max<std::size_t>(places, 1)));
+      fresh.contact.resize(c.contact_begin + c.room);
+      if (setup.keep_ledger) fresh.last.resize(fresh.contact.size());
+      c.constants = wall_constants(in.materials(grains.material[r], setup.walls[w].material),
+                                   {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
+      c.scale = level_scale(c.constants, setup.resolution());
+      fresh.candidate.push_back(c);
+      fresh.activity.push_back(activity);
     }
-    fresh.chunk_begin.push_back(std::uint32_t(fresh.chunk.size()));
+    if (first == fresh.candidate.size()) continue;
+    fresh.chunk.emplace_back();
+    fresh.chunk.back().wall = w;
+    fresh.chunk.back().begin = first;
+    fresh.chunk.back().end = std::uint32_t(fresh.candidate.size());
   }
-  if (remembered != memory.wall_pairs.size())
-    throw CaseError("the stored state has a contact with a wall that is not there");
-  fresh.near_parts.resize(fresh.parts.size());
   return fresh;
+}
+
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, const Memory& memory) {
+  const std::vector<std::uint32_t> begin = first_of_rows(memory.wall_pairs, grains.size());
+  std::vector<WallContacts> parts(chunks_of(grains.size()));
+  std::vector<std::exception_ptr> failed(parts.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t c = 0; c < parts.size(); ++c) try {
+      parts[c] = wall_contacts_of_chunk(in, grains, memory, begin, c);
+    } catch (...) {
+      failed[c] = std::current_exception();
+    }
+  for (const std::exception_ptr& error : failed)
+    if (error) std::rethrow_exception(error);
+
+  WallContacts all;
+  all.skin = in.skin;
+  all.chunk_begin.assign(1, 0);
+  for (const WallContacts& part : parts) {
+    const std::uint32_t candidates = std::uint32_t(all.candidate.size()), contacts = std::uint32_t(all.contact.size()),
+                        triangles = std::uint32_t(all.parts.size());
+    for (WallCandidate c : part.candidate) {
+      c.contact_begin += contacts;
+      c.part_begin += triangles;
+      c.part_end += triangles;
+      all.candidate.push_back(c);
+    }
+    for (WallContacts::Chunk chunk : part.chunk) {
+      chunk.begin += candidates;
+      chunk.end += candidates;
+      all.chunk.push_back(chunk);
+    }
+    append(all.activity, part.activity);
+    append(all.parts, part.parts);
+    append(all.contact, part.contact);
+    append(all.last, part.last);
+    all.chunk_begin.push_back(std::uint32_t(all.chunk.size()));
+  }
+  all.near_parts.resize(all.parts.size());
+  return all;
 }
 
 std::vector<std::uint32_t> by_grain(const GrainStore& grains, const WallContacts& walls) {

@@ -32,8 +32,9 @@ struct ListInput {
 // The pairs in lanes for the rows as they are laid out now, those that touch first.
 Lanes list_pairs(const ListInput& in, const GrainStore& grains, const Memory& memory);
 
-// Stores with that memory in them. Throw CaseError where a contact of the memory has no place in them.
-PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const GrainStore& grains, const Memory& memory);
+// Stores with that memory in them, the pairs' in the room of `used`. Throw CaseError where a contact of the memory has no place in them.
+PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const GrainStore& grains, const Memory& memory,
+                                PairContacts used);
 WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, const Memory& memory);
 
 // Rows of walls.candidate in the caller's order of grains, then by wall.

@@ -19,8 +19,8 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   const std::size_t n = grains.size();
   const Particles& p = grains.caller;
   grains.order = std::move(order);
-  const std::vector<GrainRow> rows_before = std::exchange(grains.rows, std::vector<GrainRow>(n + chunks_of(n), phantom()));
-  const std::vector<Vec4> spun_before = std::exchange(grains.spun, std::vector<Vec4>(n + chunks_of(n), Vec4::Zero()));
+  const LargeArray<GrainRow> rows_before = std::exchange(grains.rows, LargeArray<GrainRow>(n + chunks_of(n), phantom()));
+  const LargeArray<Vec4> spun_before = std::exchange(grains.spun, LargeArray<Vec4>(n + chunks_of(n), Vec4::Zero()));
   grains.forces.assign(n + chunks_of(n), ForceRow{});
   grains.mass.resize(n);
   grains.inertia.resize(n);

@@ -18,9 +18,9 @@ struct GrainStore {
   // In the order of rows.
   std::vector<std::uint32_t> order;   // the caller's row
   std::vector<std::uint32_t> row_of;  // the inverse: row here of the caller's row
-  std::vector<GrainRow> rows;         // and phantoms
-  std::vector<ForceRow> forces;       // and phantoms
-  std::vector<Vec4> spun;             // rad/s, half of the last change of the angular velocity; and phantoms
+  LargeArray<GrainRow> rows;         // and phantoms
+  LargeArray<ForceRow> forces;       // and phantoms
+  LargeArray<Vec4> spun;             // rad/s, half of the last change of the angular velocity; and phantoms
   std::vector<double> mass, inertia;  // kg, kg m^2
   std::vector<std::uint8_t> material;
   std::vector<std::uint32_t> id;

@@ -12,7 +12,7 @@ struct GuardInput {
   const Setup& setup;
   // In the order of the run's rows.
   const std::vector<std::uint32_t>& id;
-  const std::vector<GrainRow>& grains;  // and phantoms behind them
+  const LargeArray<GrainRow>& grains;  // and phantoms behind them
   const std::vector<double>& mass;     // [N] kg
   const std::vector<double>& inertia;  // [N] kg m^2
   const MaterialTable& materials;

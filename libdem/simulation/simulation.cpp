@@ -26,9 +26,9 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-template <class... Value>
-std::size_t bytes_of(const std::vector<Value>&... values) {
-  return ((values.capacity() * sizeof(Value)) + ...);
+template <class... Array>
+std::size_t bytes_of(const Array&... arrays) {
+  return ((arrays.capacity() * sizeof(typename Array::value_type)) + ...);
 }
 
 class Stopwatch {
@@ -369,7 +369,7 @@ struct Simulation::Engine {
   }
 
   void fill_lists(const Lanes& lanes, const Memory& memory) {
-    pairs = make_pair_contacts(list_input(), lanes, grains, memory);
+    pairs = make_pair_contacts(list_input(), lanes, grains, memory, std::move(pairs));
     walls = make_wall_contacts(list_input(), grains, memory);
   }
 

@@ -11,7 +11,7 @@ namespace dem {
 namespace {
 
 struct Scene {
-  std::vector<GrainRow> rows;
+  LargeArray<GrainRow> rows;
   std::vector<std::uint8_t> material;
   std::vector<double> mass, inertia;
   PairList list;

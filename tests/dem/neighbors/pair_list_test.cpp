@@ -20,7 +20,8 @@ Scene random_scene(std::uint64_t seed) {
   const Vec3 box(draw(0, 5), draw(0, 5), draw(0, 5));  // from points and planes to dilute clouds
   for (std::size_t i = 0; i < n; ++i) {
     scene.position.emplace_back(draw(-1, 1) * box.x(), draw(-1, 1) * box.y(), draw(-1, 1) * box.z());
-    scene.radius.push_back(seed % 3 == 0 && i % 17 == 0 ? draw(1, 5) : draw(0.1, 0.6));  // sometimes a few boulders
+    const double radius = draw(0.1, 0.6);
+    scene.radius.push_back(seed % 3 == 0 && i % 17 == 0 ? draw(1, 5) : seed % 4 == 0 ? 0.4 : radius);  // a few boulders; many alike
   }
   if (n > 3 && seed % 5 == 0) scene.position[2] *= 1e6;  // a stray far away
   return scene;
