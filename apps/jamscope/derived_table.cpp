@@ -78,6 +78,14 @@ std::vector<DerivedRow> derived_table(const dem::Case& c, const dem::Derived& d)
   add_plain("contact", "Cohesion number", d.cohesion, fmt::format("{:.2g}", d.cohesion),
             "(W^5 / (E^2 R^8))^(1/3) / (rho g)");
   if (c.rheometer) add("contact", "mean grain squeezed in the gap", d.mean_in_gap.force, "N", d.mean_in_gap.force > 0 ? "" : "it fits");
+  if (c.rheometer) {
+    const bool flat = d.entrance > d.gap;
+    add("contact", "friction draws in grains up to", d.drawn_in, "m",
+        fmt::format("{} of them do not fit through the gap and get in; gap (1 + mu^2){}", percent(d.drawn_in_share),
+                    flat ? fmt::format(", {:.3g} mm in the middle of flat tips", 1e3 * d.entrance) : ""));
+    add("contact", "largest of them squeezed", d.largest_in_gap.force, "N",
+        d.largest_in_gap.force > 0 ? (flat ? "by blade and vessel each, at most: rolled into the narrowest place" : "by blade and vessel each") : "none is");
+  }
   // A grain that rolls between tip and vessel goes at half the tip's speed.
   const double rolling_friction =
       c.rheometer ? c.interactions[dem::material_index(c, c.bed.material)][dem::material_index(c, c.blade.material)].rolling_friction : 0;

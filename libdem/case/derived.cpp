@@ -57,6 +57,12 @@ double tip_radius(const Case& c) {
   return blade ? blade->diameter / 2 : 0;
 }
 
+double flat_tip_distance(const TwistedBlade& blade) {
+  const double radius = blade.diameter / 2;
+  const double y = blade.thickness / 2 * std::cos(blade.tip_twist) + blade.height / 2 * std::abs(std::sin(blade.tip_twist));
+  return std::sqrt((radius - y) * (radius + y));
+}
+
 namespace {
 
 // What there is of a rheometer only; needs the sizes of the grains.
@@ -76,6 +82,16 @@ void derive_rheometer(const Case& c, double tip, Derived& d) {
   d.modulus_blade = effective_modulus(grain, blade);
   d.contact_time = hertz_contact_time(d.mean_mass / 2, d.reduced_radius, d.modulus, c.motion.tip_speed);
   d.mean_in_gap = squeeze(grain, blade, vessel, c.bed.mean_diameter, d.gap);
+
+  const auto* const twisted = std::get_if<TwistedBlade>(&c.blade.shape);
+  const bool flat = twisted && twisted->tip_cut == TwistedBlade::TipCut::flat;
+  d.entrance = flat ? c.vessel.diameter / 2 - flat_tip_distance(*twisted) : d.gap;
+  const auto& friction_on = c.interactions[material_index(c, c.bed.material)];
+  const double friction = std::min(friction_on[material_index(c, c.blade.material)].friction, friction_on[material_index(c, c.vessel.material)].friction);
+  d.drawn_in = d.entrance * (1 + friction * friction);
+  const auto share_below = [&](double diameter) { return size_share_below(c.bed, diameter / c.bed.mean_diameter); };
+  d.drawn_in_share = share_below(d.drawn_in) - share_below(d.gap);
+  if (d.drawn_in_share > 0) d.largest_in_gap = squeeze(grain, blade, vessel, std::min(d.drawn_in, d.largest_diameter), d.gap);
 }
 
 }  // namespace

@@ -36,8 +36,11 @@ Squeeze squeeze(const Material& grain, const Material& wall_a, const Material& w
 // Largest distance of the blade from its axis, m; 0 for a mesh file, whose vertices know (libdem/geometry).
 double tip_radius(const Case& c);
 
+// Distance of flat tips (TipCut::flat) from the axis, m: their corners, at y = t/2 cos(beta) + h/2 |sin(beta)| from the middle, reach the tip radius.
+double flat_tip_distance(const TwistedBlade& blade);
+
 struct Derived {
-  // Motion [X, section 2]; this, the moduli with vessel and blade, contact_time and mean_in_gap of a rheometer only.
+  // Motion [X, section 2]; this, the moduli with vessel and blade, contact_time, mean_in_gap and largest_in_gap of a rheometer only.
   double axial_velocity = 0;    // m/s, u = v sin(alpha); negative: downward
   double angular_velocity = 0;  // rad/s, omega = v cos(alpha) / R_tip, positive whatever the sense
   double travel = 0;            // m, |u| duration
@@ -46,6 +49,11 @@ struct Derived {
   double gap = 0;            // m, between tip and vessel
   double gap_over_mean = 0;  // gap / mean diameter
   double gap_over_d90 = 0;   // gap / D90 by number
+  // A grain that touches vessel and leading edge is drawn in where both can hold it, tan of half the angle between them <= mu: up to the
+  // diameter entrance (1 + mu^2) (flat vessel, sharp edge, nobody pushes; data/reference/paper, "Which grains jam").
+  double entrance = 0;         // m, widest gap at the tips: `gap`, or that in the middle of tips which are cut flat
+  double drawn_in = 0;         // m, mu: the smaller friction of grain on blade and vessel
+  double drawn_in_share = 0;   // of the grains, by number, those that do not fit through the gap and are drawn in
 
   // Grains; moments and quantiles of their sizes from libdem/case/size_distribution.hpp.
   double smallest_diameter = 0, largest_diameter = 0, d90 = 0;  // m, D90 by number: 90 % of the grains are smaller
@@ -64,6 +72,7 @@ struct Derived {
   double step_over_rayleigh_mean = 0, step_over_rayleigh_smallest = 0;
   double contact_time = 0;  // Hertz, two mean grains at the tip speed
   Squeeze mean_in_gap;      // a mean grain between blade tip and vessel
+  Squeeze largest_in_gap;   // the largest that is drawn in, where the gap is narrowest
 
   // Cost.
   double steps = 0, frames = 0, series_rows = 0, checkpoints = 0;

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "libdem/case/derived.hpp"
 #include "libdem/errors.hpp"
 #include "libdem/geometry/mesh_processing.hpp"
 
@@ -117,10 +118,8 @@ class Plate {
   }
 
   double tip_x(double xi, double zeta) const {
-    const double c = std::cos(blade_.tip_twist), s = std::sin(blade_.tip_twist);
-    const double y = blade_.tip_cut == TwistedBlade::TipCut::cylindrical
-                         ? xi * c + zeta * s
-                         : blade_.thickness / 2 * c + blade_.height / 2 * std::abs(s);
+    if (blade_.tip_cut == TwistedBlade::TipCut::flat) return flat_tip_distance(blade_);
+    const double y = xi * std::cos(blade_.tip_twist) + zeta * std::sin(blade_.tip_twist);
     return std::sqrt((radius_ - y) * (radius_ + y));
   }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
@@ -89,6 +90,49 @@ TEST(Derived, ForceOfAGrainSqueezedInTheGap) {
   expect_ratio(s.normal_stiffness, 3.3e7, 0.01, "k");   // two digits in the reference
   expect_ratio(s.critical_step, 2.0e-7, 0.03, "t_cr");  // two digits in the reference
   EXPECT_EQ(squeeze(a.materials[0], a.materials[1], a.materials[0], 0.74e-3, 0.75e-3).force, 0);
+}
+
+// A grain on the vessel (flat) that touches the tip's edge, `gap` away from the vessel: the line through both points leans against both
+// normals by the angle whose tangent friction must hold.
+double friction_to_hold(double diameter, double gap) {
+  const double radius = diameter / 2;
+  const Eigen::Vector2d centre(0, radius), on_vessel(0, 0), edge(std::sqrt(radius * radius - (radius - gap) * (radius - gap)), gap);
+  const Eigen::Vector2d line = (edge - on_vessel).normalized(), normal = (centre - on_vessel).normalized(), other = (edge - centre).normalized();
+  EXPECT_NEAR(line.dot(normal), line.dot(other), 1e-12);
+  return std::tan(std::acos(line.dot(normal)));
+}
+
+TEST(Derived, FrictionDrawsGrainsIntoTheGapUpToADiameter) {
+  Case c = ft4('a');
+  const Derived d = derive(c);
+  expect_ratio(friction_to_hold(d.drawn_in, 0.75e-3), 0.3, 1e-9, "mu");  // of glass on steel; on the vessel of glass it is 0.5
+  EXPECT_EQ(d.entrance, d.gap);
+  expect_ratio(d.drawn_in_share, (1.09 * 0.75 - 0.75) / (1.11 - 0.74), 1e-9, "share");  // sizes even by number from 0.74 to 1.11 mm
+  EXPECT_EQ(d.largest_in_gap.force, squeeze(c.materials[0], c.materials[1], c.materials[0], d.drawn_in, d.gap).force);
+
+  // Nothing is drawn in without friction, nor where all grains are larger than friction can hold or fit through the gap; with more
+  // friction than the largest grain needs, that one is the limit.
+  const auto with = [&](double on_blade, double on_vessel, double blade_diameter) {
+    Case other = c;
+    const std::size_t glass = material_index(c, "glass"), steel = material_index(c, "steel");
+    other.interactions[glass][steel].friction = other.interactions[steel][glass].friction = on_blade;
+    other.interactions[glass][glass].friction = on_vessel;
+    std::get<TwistedBlade>(other.blade.shape).diameter = blade_diameter;
+    return derive(other);
+  };
+  EXPECT_EQ(with(0, 0.5, 23.5e-3).largest_in_gap.force, 0);
+  EXPECT_EQ(with(0.3, 0.5, 24.0e-3).largest_in_gap.force, 0);
+  EXPECT_EQ(with(0.3, 0.5, 22.0e-3).largest_in_gap.force, 0);
+  expect_ratio(with(0.5, 0.3, 23.5e-3).drawn_in, d.drawn_in, 1e-12, "the smaller friction");
+  EXPECT_EQ(with(0.9, 0.9, 23.5e-3).largest_in_gap.force, squeeze(c.materials[0], c.materials[1], c.materials[0], d.largest_diameter, d.gap).force);
+
+  // Flat tips with corners as far out: 0.9483 mm in their middle, by hand from R = 11.75, t = 1.5, h = 6 mm, beta = 30 deg.
+  std::get<TwistedBlade>(c.blade.shape).tip_cut = TwistedBlade::TipCut::flat;
+  const Derived flat = derive(c);
+  EXPECT_EQ(flat.gap, d.gap);
+  expect_ratio(flat.entrance, 0.9482872e-3, 1e-6, "entrance");
+  expect_ratio(friction_to_hold(flat.drawn_in, flat.entrance), 0.3, 1e-9, "mu");
+  EXPECT_GT(flat.largest_in_gap.force, 7 * d.largest_in_gap.force);  // of a squeeze 4 times as deep, Hertz
 }
 
 TEST(Derived, SqueezeStiffnessIsTheDerivativeOfItsForce) {
