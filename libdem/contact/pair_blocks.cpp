@@ -90,7 +90,7 @@ bool fit(const Lanes& lanes, const GrainTable& grains) {
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
                                 const Resolution& resolution, bool rolling_spring, bool keep_ledger, PairContacts pairs) {
   const std::size_t blocks = lanes.size() / width, chunks = chunks_of(grains.size());
-  if (pairs.block.capacity() < blocks) {
+  if (pairs.block.capacity() < blocks) {  // by little, as they are most of a run's memory
     pairs.block = {};
     pairs.block.reserve(blocks + blocks / 16);
   }
