@@ -61,6 +61,8 @@ class Run {
     save();
   }
 
+  bool can_resume() const { return std::filesystem::exists(restart()); }
+
   // Frames after the checkpoint are dropped; those before it go through the analysis again.
   void resume() {
     Checkpoint checkpoint = read_checkpoint(restart());
@@ -244,6 +246,8 @@ SimulateResult run_simulation(const SimulateOptions& options, const CaseFile& fi
     if (options.resume) {
       run.resume();
     } else {
+      if (!options.overwrite && run.can_resume())
+        throw UsageError(options.output + " holds a run: --resume to go on with it, or --overwrite to begin again and lose it");
       prepare_folder(options.output, options.overwrite);
       run.begin();
     }

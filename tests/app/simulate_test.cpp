@@ -310,7 +310,7 @@ TEST_F(SimulateProgram, RefusesToResumeAnotherCaseAndToOverwrite) {
   ASSERT_EQ(run_program(command("out", "--until '0.1 ms'")).code, 0);
   const Outcome over = run_program(command("out"));
   EXPECT_EQ(over.code, 2);
-  EXPECT_THAT(over.err, HasSubstr("--overwrite"));
+  EXPECT_THAT(over.err, HasSubstr("holds a run: --resume to go on with it, or --overwrite"));
   const Outcome other = run_program(command("out", "--resume --set motion.tip_speed='100 mm/s'"));
   EXPECT_EQ(other.code, 2);
   EXPECT_THAT(other.err, HasSubstr("another case"));
