@@ -168,6 +168,7 @@ Json step_stream_json(const jam::Analysis::StepStream& stream, double flow_energ
             {"cut_off_by_the_record", cut_off},
             {"frequency_per_s", rate_json(s.rate)},
             {"jammed_time_s", number(s.jammed_time)},
+            {"at_a_time", number(s.at_a_time)},
             {"median_duration_s", {{"value", number(s.median.value)}, {"low", number(s.median.low)}, {"high", number(s.median.high)}}},
             {"longest_s", number(s.longest)},
             {"largest_force_N", number(peak)},
@@ -332,6 +333,12 @@ Json analysis_json(const jam::RunInfo& info, const jam::Analysis& a, const jam::
   if (!a.flow_pattern.empty()) json["flow_pattern"] = flow_pattern_json(a.flow_pattern);
   for (std::size_t s = 0; s < a.every_step.size(); ++s)
     json["jams_at_every_step"][std::string(jam::jam_stream_names[s])] = step_stream_json(a.every_step[s], a.flow_energy.total);
+  if (constexpr auto particle = std::size_t(jam::JamStream::particle); a.every_step.size() > particle) {
+    const jam::JamStatistics& grains = a.every_step[particle].statistics;
+    const jam::Overlapping any = jam::overlapping(grains.rate.value, grains.at_a_time / grains.rate.value);
+    json["jams_at_every_step"]["global"]["if_grains_jam_independently"] = {
+        {"at_a_time", number(any.share)}, {"frequency_per_s", number(any.rate)}, {"mean_duration_s", number(any.mean_duration)}};
+  }
   if (!a.contact_life.empty()) {
     Json& life = json["contact_life"];
     life["median_s"] = {{"particles", number(jam::median_life(a.contact_life, &jam::ContactLife::particles))},

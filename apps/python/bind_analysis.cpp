@@ -139,6 +139,7 @@ void bind_values(py::module_& m) {
   py::class_<jam::JamStatistics>(m, "JamStatistics", "What the jams of one stream say in all.")
       .def_readonly("rate", &jam::JamStatistics::rate, "1/s, of jams that began in the record, if they come independently")
       .def_readonly("jammed_time", &jam::JamStatistics::jammed_time, "s, summed durations")
+      .def_readonly("at_a_time", &jam::JamStatistics::at_a_time, "jams at a time in the mean: jammed_time over the length of the record")
       .def_readonly("longest", &jam::JamStatistics::longest, "s")
       .def_readonly("survival", &jam::JamStatistics::survival, "Of those that began in the record; those still there at its end are cut off.")
       .def_readonly("median", &jam::JamStatistics::median, "s, of the survival")

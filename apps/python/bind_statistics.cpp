@@ -107,6 +107,10 @@ void bind_statistics(py::module_& m) {
   py::class_<jam::IndependenceTest>(m, "IndependenceTest", "Lilliefors' test of exponential distances.")
       .def_readonly("distance", &jam::IndependenceTest::distance, "largest, of the empirical from the fitted distribution")
       .def_readonly("p", &jam::IndependenceTest::p, "its probability if they are exponential; NaN for fewer than three starts");
+  py::class_<jam::Overlapping>(m, "Overlapping", "When at least one of many independent events is there.")
+      .def_readonly("share", &jam::Overlapping::share, "of the time")
+      .def_readonly("rate", &jam::Overlapping::rate, "1/s, at which it begins to be so")
+      .def_readonly("mean_duration", &jam::Overlapping::mean_duration, "s, for which it is so; NaN for a rate of 0");
   py::class_<jam::BlockMean>(m, "BlockMean", "A mean and its bootstrap interval.")
       .def_readonly("value", &jam::BlockMean::value, "the mean")
       .def_readonly("low", &jam::BlockMean::low, "lower end")
@@ -182,6 +186,14 @@ void bind_statistics(py::module_& m) {
   m.def(
       "exponential_distances", [](const Numbers& start) { return jam::exponential_distances(numbers(start, "start")); }, py::arg("start"),
       "Are the distances of consecutive start times, s, exponential, as they are if events come independently? Lilliefors' test.");
+  m.def(
+      "overlapping",
+      [](double rate, double mean_duration) {
+        if (!(rate >= 0 && mean_duration >= 0)) throw py::value_error(fmt::format("rate {} 1/s, mean_duration {} s, expected numbers >= 0", rate, mean_duration));
+        return jam::overlapping(rate, mean_duration);
+      },
+      py::arg("rate"), py::arg("mean_duration"),
+      "At least one of events that begin independently, 1/s, and last so long in the mean, s: for 1 - exp(-n) of the time, n = rate mean_duration (busy periods, Takacs 1962).");
   m.def(
       "bootstrap_mean",
       [](const Numbers& blocks, double confidence) {

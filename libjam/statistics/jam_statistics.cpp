@@ -23,6 +23,7 @@ JamStatistics jam_statistics(std::span<const StepJam> jams, double begin, double
   }
   std::sort(starts.begin(), starts.end());
   const std::vector<Lifetime> lifetimes = lifetimes_of(jams);
+  s.at_a_time = s.jammed_time / (end - begin);
   s.rate = poisson_rate(starts.size(), end - begin);
   s.survival = kaplan_meier(lifetimes);
   s.median = when_left(s.survival);

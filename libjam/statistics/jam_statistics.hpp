@@ -20,6 +20,7 @@ struct LawFit {
 struct JamStatistics {
   Rate rate;                // of jams that began in the record, 1/s, if they come independently
   double jammed_time = 0;   // s, summed durations
+  double at_a_time = 0;     // jams at a time in the mean: jammed_time over the length of the record
   double longest = 0;       // s
   SurvivalCurve survival;   // of those that began in the record; those still there at its end are cut off
   Quantile median;          // s

@@ -58,6 +58,11 @@ double fano_factor(std::span<const double> start, double begin, double end, std:
   return variance / mean;
 }
 
+Overlapping overlapping(double rate, double mean_duration) {
+  const double at_a_time = rate * mean_duration;
+  return {-std::expm1(-at_a_time), rate * std::exp(-at_a_time), rate > 0 ? std::expm1(at_a_time) / rate : nan};
+}
+
 IndependenceTest exponential_distances(std::span<const double> start) {
   if (start.size() < 3) return {nan, nan};
   std::vector<double> distances;

@@ -30,6 +30,15 @@ struct IndependenceTest {
 };
 IndependenceTest exponential_distances(std::span<const double> start);
 
+// "At least one is there", where events begin independently of each other at a constant rate, 1/s, and last `mean_duration`, s, in the mean, however it
+// is distributed: the busy periods of a queue with as many servers as are wanted (Takacs, Introduction to the Theory of Queues, 1962). With the
+// mean number at a time n = rate mean_duration, it is so for 1 - exp(-n) of the time, begins rate exp(-n) times a second and lasts
+// (exp(n) - 1)/rate in the mean (NaN for a rate of 0).
+struct Overlapping {
+  double share = 0, rate = 0, mean_duration = 0;  // 1, 1/s, s
+};
+Overlapping overlapping(double rate, double mean_duration);
+
 // A mean over runs or blocks, with the interval of its bootstrap: blocks are drawn anew with replacement (Efron). Percentiles of 10,000 draws
 // with a fixed seed, so the same blocks give the same interval.
 struct BlockMean {

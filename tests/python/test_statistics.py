@@ -86,6 +86,14 @@ class Rates(unittest.TestCase):
         self.assertGreater(statistics.exponential_distances(numpy.cumsum(random.exponential(1, 200))).p, 0.05)
         self.assertLess(statistics.exponential_distances(numpy.arange(200.0)).p, 1e-3)
 
+    def test_independent_events_that_overlap(self):
+        any_there = statistics.overlapping(2.0, 0.5)
+        self.assertAlmostEqual(any_there.share, 1 - math.exp(-1), 14)
+        self.assertAlmostEqual(any_there.rate, 2 * math.exp(-1), 14)
+        self.assertAlmostEqual(any_there.mean_duration, (math.e - 1) / 2, 14)
+        with self.assertRaisesRegex(ValueError, "expected numbers >= 0"):
+            statistics.overlapping(-1, 1)
+
     def test_bootstrap(self):
         blocks = numpy.random.default_rng(1).normal(5, 1, 40)
         mean = statistics.bootstrap_mean(blocks)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -38,6 +39,41 @@ TEST(SameRateProbability, IsRsPoissonTestOfTwo) {
 TEST(FanoFactor, IsVarianceOverMeanOfTheCounts) {
   EXPECT_NEAR(fano_factor(std::vector<double>{0.1, 0.2, 2.5, 3.9}, 0, 4, 4), 2.0 / 3, 1e-15);
   EXPECT_TRUE(std::isnan(fano_factor({}, 0, 4, 4)));
+}
+
+// Brute force: 400,000 events drawn one by one, merged where they overlap, for durations that are all alike, exponential, and of two kinds: only the mean
+// matters. Means of some 1e5 busy periods have errors of 0.3 to 0.6 %; five of them are allowed.
+TEST(Overlapping, IsWhatDrawingAndMergingEventsGives) {
+  for (const double at_a_time : {0.3, 1.0, 2.0})
+    for (const int kind : {0, 1, 2}) {
+      Draws draw(std::uint64_t(10 * at_a_time) + std::uint64_t(kind));
+      const double rate = 120, mean = at_a_time / rate;
+      double start = 0, begin = 0, end = 0, busy = 0;
+      std::size_t periods = 0;
+      constexpr int events = 400'000;
+      for (int k = 0; k < events; ++k) {
+        start += draw.exponential(1 / rate);
+        if (start > end) {
+          busy += end - begin;
+          ++periods;
+          begin = end = start;
+        }
+        const double duration = kind == 0 ? mean : kind == 1 ? draw.exponential(mean) : draw.uniform() < 0.5 ? 0.2 * mean : 1.8 * mean;
+        end = std::max(end, start + duration);
+      }
+      const Overlapping any = overlapping(rate, mean);
+      EXPECT_NEAR(any.share, busy / start, 0.01 * any.share) << at_a_time << ' ' << kind;
+      EXPECT_NEAR(any.rate, double(periods) / start, 0.02 * any.rate) << at_a_time << ' ' << kind;
+      EXPECT_NEAR(any.mean_duration, busy / double(periods), 0.03 * any.mean_duration) << at_a_time << ' ' << kind;
+      EXPECT_NEAR(any.share, any.rate * any.mean_duration, 1e-14);
+    }
+}
+
+TEST(Overlapping, OfNoneAndOfRareEvents) {
+  EXPECT_EQ(overlapping(0, 1).share, 0);
+  EXPECT_EQ(overlapping(0, 1).rate, 0);
+  EXPECT_TRUE(std::isnan(overlapping(0, 1).mean_duration));
+  EXPECT_NEAR(overlapping(1e-12, 1).mean_duration, 1, 1e-11);  // no cancellation where they hardly ever overlap
 }
 
 // Independent starts: p is uniform, so below 0.05 in about 5 of 100 records (1 to 11 in all but 1 in a hundred such tests); starts in bursts,
