@@ -188,6 +188,7 @@ void write_state(jam::h5::File& f, const dem::State& s) {
   if (!s.force.empty()) {
     const Layout& layout = s.layout;
     f.make_group("/state/layout");
+    f.set_attribute("/state/layout", "chunk_rows", layout.chunk_rows);
     f.set_attribute("/state/layout", "listed_step", layout.listed_step);
     f.set_attribute("/state/layout", "skin", layout.skin);
     f.set_attribute("/state/layout", "odometer", layout.odometer);
@@ -225,6 +226,7 @@ dem::State read_state(const jam::h5::File& f) {
   read_columns(f, "/state/excursions/", s.excursions, excursion_columns);
   if (f.exists("/state/layout")) {
     Layout& layout = s.layout;
+    if (f.has_attribute("/state/layout", "chunk_rows")) layout.chunk_rows = f.attribute<std::uint64_t>("/state/layout", "chunk_rows");
     layout.listed_step = f.attribute<std::uint64_t>("/state/layout", "listed_step");
     layout.skin = f.attribute<double>("/state/layout", "skin");
     layout.odometer = f.attribute<double>("/state/layout", "odometer");

@@ -1,5 +1,7 @@
 #include "libdem/contact/forces.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -785,38 +787,56 @@ void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due
   }
 }
 
-void wait_for(PairContacts::Chunk& chunk) {
-  const std::atomic_ref<std::uint8_t> pending(chunk.pending);
-  for (int spins = 0; pending.load(std::memory_order_acquire) != 0; ++spins)
-    if (spins > 100) std::this_thread::yield();
-}
+bool pending(PairContacts::Chunk& chunk) { return std::atomic_ref(chunk.pending).load(std::memory_order_acquire) != 0; }
 
-// Each thread takes the next chunk, evaluates it, and finishes the one that it evaluated before. It waits for nothing between
-// taking a chunk and having evaluated it, and chunks are taken in ascending order: so what it waits for in finishing, chunks
-// before its own, is being evaluated, and it waits hardly ever.
+// Due chunks that one thread begins with: neighbours in space, so that it finds in its own caches what pairs that cross chunks share. Who
+// has none left takes from the others'.
+struct Share {
+  alignas(64) std::atomic<std::size_t> next;
+  std::size_t end;
+};
+
+// Each thread takes the next chunk of its share, evaluates it, and finishes the one that it evaluated before, or later if chunks that send
+// forces to it are still to be evaluated. It waits only when none is left to take: then whoever has one evaluates it, and waits for nothing
+// meanwhile.
 template <class Law, bool Keep>
 double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out,
                     const std::function<void(std::size_t)>& finish) {
   const std::size_t count = in.due_chunks.size();
   for (const std::uint32_t number : in.due_chunks) pairs.chunk[number].pending = 1;
-#pragma omp parallel if (count >= few_chunks)
+  const std::size_t threads = count >= few_chunks ? std::size_t(omp_get_max_threads()) : 1;
+  std::vector<Share> shares(threads);
+  for (std::size_t t = 0; t < threads; ++t) {
+    shares[t].next = count * t / threads;
+    shares[t].end = count * (t + 1) / threads;
+  }
+#pragma omp parallel num_threads(int(threads))
   {
+    const std::size_t me = std::size_t(omp_get_thread_num());
+    std::vector<std::size_t> unfinished;
+    const auto ready = [&](std::size_t k) {
+      return std::ranges::none_of(pairs.chunk[in.due_chunks[k]].senders, [&](std::uint32_t sender) { return pending(pairs.chunk[sender]); });
+    };
     const auto complete = [&](std::size_t k) {
-      const std::uint32_t number = in.due_chunks[k];
-      for (const std::uint32_t sender : pairs.chunk[number].senders) wait_for(pairs.chunk[sender]);
-      add_crossing(pairs, number, in.due, out);
+      add_crossing(pairs, in.due_chunks[k], in.due, out);
       finish(k);
     };
     std::size_t before = count;
-#pragma omp for schedule(monotonic : dynamic, 1) nowait
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t number = in.due_chunks[k];
-      evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, out);
-      std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
-      if (before < count) complete(before);
-      before = k;
+    for (std::size_t turn = 0; turn < threads; ++turn) {
+      Share& share = shares[(me + turn) % threads];
+      for (std::size_t k = share.next++; k < share.end; k = share.next++) {
+        evaluate_chunk<Law, Keep>(law, in, pairs, walls, in.due_chunks[k], out);
+        std::atomic_ref(pairs.chunk[in.due_chunks[k]].pending).store(0, std::memory_order_release);
+        if (before < count) ready(before) ? complete(before) : unfinished.push_back(before);
+        before = k;
+      }
     }
-    if (before < count) complete(before);
+    if (before < count) unfinished.push_back(before);
+    for (const std::size_t k : unfinished) {
+      for (int spins = 0; !ready(k); ++spins)
+        if (spins > 100) std::this_thread::yield();
+      complete(k);
+    }
   }
   double largest_overlap = 0;
   for (const std::uint32_t number : in.due_chunks) {

@@ -37,6 +37,15 @@ inline Pack smaller(const Pack& a, const Pack& b) { return select(a < b, a, b); 
 template <class Real>
 using Mask = decltype(Real() < Real());
 
+// Numbers of half the digits, whose roots and quotients take a third of the time: for first guesses.
+using SinglePack = std::experimental::rebind_simd_t<float, Pack>;
+inline float to_single(double a) { return float(a); }
+inline SinglePack to_single(const Pack& a) { return std::experimental::static_simd_cast<SinglePack>(a); }
+inline double to_double(float a) { return a; }
+inline Pack to_double(const SinglePack& a) { return std::experimental::static_simd_cast<Pack>(a); }
+inline float square_root(float a) { return std::sqrt(a); }
+inline SinglePack square_root(const SinglePack& a) { return std::experimental::sqrt(a); }
+
 // Three components of a number type. Eigen's matrices expect comparisons to give one bool, which a pack cannot.
 template <class Real>
 struct Triple {

@@ -126,7 +126,7 @@ struct Simulation::Engine {
       memory.last.resize(memory.pairs.size());
       memory.wall_last.resize(memory.wall_pairs.size());
     }
-    if (goes_on && !state.layout.order.empty())
+    if (goes_on && state.layout.chunk_rows == chunk_rows)
       restore_lists(state.layout, memory);
     else
       build_lists(memory);
@@ -696,6 +696,7 @@ State Simulation::state() const {
     state.torque[grains.order[r]] = grains.forces[r].torque.head<3>();
     state.layout.listed.push_back(grains.listed[r].head<3>());
   }
+  state.layout.chunk_rows = chunk_rows;
   state.layout.order = grains.order;
   for (std::size_t lane = 0; lane < e.pairs.lanes(); ++lane) {
     state.layout.first.push_back(e.pairs.first(lane));

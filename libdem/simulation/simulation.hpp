@@ -82,6 +82,7 @@ struct State {
   };
   // How the run keeps its grains and pairs: sums go in this order. Only read together with `force`.
   struct Layout {
+    std::uint64_t chunk_rows = 0;              // of the program that wrote it: another lays the state out anew, with sums in another order
     std::vector<std::uint32_t> order;          // [N] row of `particles` for each row of the run
     std::vector<Vec3> listed;                  // [N] m, where the grains were when the lists were built; rows of the run
     std::vector<std::uint32_t> first, second;  // [lanes] rows of the run (PairContacts)

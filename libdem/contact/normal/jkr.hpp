@@ -20,26 +20,26 @@ namespace dem {
 // -(27/256)^(1/3): the overlap, in adhesion lengths, at which a formed contact breaks.
 inline constexpr double jkr_break = -0.47247039371057742;
 
-// The stable root y(delta) of y^4 - y = delta for delta >= jkr_break.
+// The stable root y(delta) of y^4 - y = delta for jkr_break <= delta <= 1e30.
 // With y = y_c + e, y_c = 4^(-1/3), the quartic becomes e^2 (6 y_c^2 + 4 y_c e + e^2) = q^2 with q^2 = delta - jkr_break: no
 // cancellation and no second positive root. For small and for large q, e tends to q/(2 r) and q/r with r = sqrt(q + 3/2 y_c^2),
 // and e r/q is a smooth function of 1/r: here the polynomial that agrees with it at the Chebyshev nodes of
-// [0, 1/sqrt(3/2 y_c^2)]. That is within 6.7e-7 everywhere, so that one Halley step, which cubes the error, reaches rounding.
+// [0, 1/sqrt(3/2 y_c^2)]. That is within 6.7e-7 everywhere, and needs no more digits than a float has. Two steps with the slope
+// of the guess, each of which makes the error a millionth, reach rounding.
 template <class Real>
 Real jkr_root(const Real& delta) {
   constexpr double y_c = 0.62996052494743658;  // 4^(-1/3)
   constexpr double a = 6 * y_c * y_c, b = 4 * y_c, c = a / 4;
-  constexpr double p0 = 1.0000006865390332, p1 = -0.63002931654275204, p2 = 0.29883539382789936, p3 = -0.13349666407197169,
-                   p4 = 0.047349591724065933, p5 = -0.0046482426081651743, p6 = -0.0039879402227714332,
-                   p7 = 0.0012244462369246199;
-  const Real t = larger(delta - jkr_break, Real(1e-40));  // the least that leaves no 0/0 below; its root is y_c
-  const Real q = square_root(t);
-  const Real r2 = q + c, x = square_root(r2) * (1.0 / r2), x2 = x * x;
-  const Real e = q * x * (((p0 + p1 * x) + x2 * (p2 + p3 * x)) + x2 * x2 * ((p4 + p5 * x) + x2 * (p6 + p7 * x)));
-  const Real f = e * e * (a + e * (b + e)) - t;
-  const Real f1 = e * (2 * a + e * (3 * b + 4 * e));
-  const Real f2 = a + e * (3 * b + 6 * e);  // half the second derivative
-  return y_c + (e - f * f1 / (f1 * f1 - f * f2));
+  constexpr float p0 = 1.0000006865390332f, p1 = -0.63002931654275204f, p2 = 0.29883539382789936f, p3 = -0.13349666407197169f,
+                  p4 = 0.047349591724065933f, p5 = -0.0046482426081651743f, p6 = -0.0039879402227714332f,
+                  p7 = 0.0012244462369246199f;
+  const Real t = larger(delta - jkr_break, Real(1e-30));  // the least that leaves no 0/0 below; its root is y_c
+  const auto q = square_root(to_single(t)), r2 = q + float(c), x = square_root(r2) * (1.0f / r2), x2 = x * x;
+  const auto guess = q * x * (((p0 + p1 * x) + x2 * (p2 + p3 * x)) + x2 * x2 * ((p4 + p5 * x) + x2 * (p6 + p7 * x)));
+  const Real per_slope = to_double(1.0f / (guess * (float(2 * a) + guess * (float(3 * b) + 4.0f * guess))));
+  Real e = to_double(guess);
+  for (int k = 0; k < 2; ++k) e = e - (e * e * (a + e * (b + e)) - t) * per_slope;
+  return y_c + e;
 }
 
 // Energies in units of F_c s, from the integral of F over the overlap: u(y) = (32/45) y^10 - (16/9) y^7 + (2/3) y^4, zero for

@@ -17,33 +17,39 @@ namespace counting {
 
 struct Counts {
   int sums = 0, products = 0, quotients = 0, roots = 0, choices = 0;  // a choice: comparison, selection, extremum, absolute value
-} counts;
+} counts, single_counts;
 
-struct Number {
-  double value = 0;
-  Number() = default;
-  Number(double v) : value(v) {}
-  explicit operator double() const { return value; }
-};
 struct Truth {
   bool value = false;
+  friend Truth operator&&(Truth a, Truth b) { return {a.value && b.value}; }
+  friend Truth operator||(Truth a, Truth b) { return {a.value || b.value}; }
+  friend bool all(Truth a) { return a.value; }
 };
-inline Number operator+(Number a, Number b) { return ++counts.sums, a.value + b.value; }
-inline Number operator-(Number a, Number b) { return ++counts.sums, a.value - b.value; }
-inline Number operator-(Number a) { return ++counts.sums, -a.value; }
-inline Number operator*(Number a, Number b) { return ++counts.products, a.value * b.value; }
-inline Number operator/(Number a, Number b) { return ++counts.quotients, a.value / b.value; }
-inline Truth operator<(Number a, Number b) { return ++counts.choices, Truth{a.value < b.value}; }
-inline Truth operator>(Number a, Number b) { return ++counts.choices, Truth{a.value > b.value}; }
-inline Truth operator>=(Number a, Number b) { return ++counts.choices, Truth{a.value >= b.value}; }
-inline Truth operator&&(Truth a, Truth b) { return {a.value && b.value}; }
-inline Truth operator||(Truth a, Truth b) { return {a.value || b.value}; }
-inline bool all(Truth a) { return a.value; }
-inline Number select(Truth mask, Number a, Number b) { return ++counts.choices, mask.value ? a : b; }
-inline Number square_root(Number a) { return ++counts.roots, std::sqrt(a.value); }
-inline Number absolute(Number a) { return ++counts.choices, std::abs(a.value); }
-inline Number larger(Number a, Number b) { return ++counts.choices, a.value > b.value ? a : b; }
-inline Number smaller(Number a, Number b) { return ++counts.choices, a.value < b.value ? a : b; }
+
+template <class Value, Counts& counts>
+struct Counting {
+  Value value = 0;
+  Counting() = default;
+  Counting(Value v) : value(v) {}
+  explicit operator double() const { return value; }
+  friend Counting operator+(Counting a, Counting b) { return ++counts.sums, a.value + b.value; }
+  friend Counting operator-(Counting a, Counting b) { return ++counts.sums, a.value - b.value; }
+  friend Counting operator-(Counting a) { return ++counts.sums, -a.value; }
+  friend Counting operator*(Counting a, Counting b) { return ++counts.products, a.value * b.value; }
+  friend Counting operator/(Counting a, Counting b) { return ++counts.quotients, a.value / b.value; }
+  friend Truth operator<(Counting a, Counting b) { return ++counts.choices, Truth{a.value < b.value}; }
+  friend Truth operator>(Counting a, Counting b) { return ++counts.choices, Truth{a.value > b.value}; }
+  friend Truth operator>=(Counting a, Counting b) { return ++counts.choices, Truth{a.value >= b.value}; }
+  friend Counting select(Truth mask, Counting a, Counting b) { return ++counts.choices, mask.value ? a : b; }
+  friend Counting square_root(Counting a) { return ++counts.roots, std::sqrt(a.value); }
+  friend Counting absolute(Counting a) { return ++counts.choices, std::abs(a.value); }
+  friend Counting larger(Counting a, Counting b) { return ++counts.choices, a.value > b.value ? a : b; }
+  friend Counting smaller(Counting a, Counting b) { return ++counts.choices, a.value < b.value ? a : b; }
+};
+using Number = Counting<double, counts>;
+using Single = Counting<float, single_counts>;
+inline Single to_single(Number a) { return float(a.value); }
+inline Number to_double(Single a) { return double(a.value); }
 
 }  // namespace counting
 
@@ -107,7 +113,7 @@ counting::Counts operations_of_the_law() {
                             first(from.spin_j), double(from.arm_i[0]), double(from.arm_j[0]), double(from.closing[0])};
   Springs<Number> springs{first(t.springs[0].tangential), {0.0, 0.0, 0.0}, double(t.springs[0].contact_radius[0])};
   const Interval<Number> dt(5e-8, 1 / 5e-8);
-  counting::counts = {};
+  counting::counts = counting::single_counts = {};
   benchmark::DoNotOptimize(evaluate(law, touch, c, springs, dt));
   return counting::counts;
 }
@@ -132,6 +138,11 @@ counting::Counts operations_of_the_law() {
   state.counters["quotients"] = of.quotients;
   state.counters["roots"] = of.roots;
   state.counters["choices"] = of.choices;
+  const counting::Counts& single = counting::single_counts;  // of half the digits
+  state.counters["single: sums"] = single.sums;
+  state.counters["single: products"] = single.products;
+  state.counters["single: quotients"] = single.quotients;
+  state.counters["single: roots"] = single.roots;
 }
 BENCHMARK(law_alone);
 

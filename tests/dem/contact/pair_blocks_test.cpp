@@ -51,7 +51,7 @@ std::optional<std::uint8_t> level(std::uint32_t i, std::uint32_t j) {
 }
 
 TEST(PairBlocks, HoldEveryPairOnceInBlocksOfOneKind) {
-  for (const std::size_t n : {0, 1, 2, 40, 256, 257, 1500}) {
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{40}, chunk_rows, chunk_rows + 1, 3 * chunk_rows + 50}) {
     const Scene s = random_scene(n, n);
     const Lanes lanes = order_lanes(s.list, s.table(), 2, level);
     ASSERT_EQ(lanes.size() % PairContacts::width, 0u);

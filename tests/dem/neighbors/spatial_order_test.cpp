@@ -7,6 +7,8 @@
 #include <numeric>
 #include <random>
 
+#include "libdem/particles/grain_rows.hpp"
+
 namespace dem {
 namespace {
 
@@ -32,7 +34,7 @@ TEST(SpatialOrder, IsAPermutationThatKeepsTheOrderWithinACell) {
   EXPECT_TRUE(spatial_order({}, 1).empty());
 }
 
-// What the order is for: of grains side by side in a cube of 32^3, most are in the same chunk of 256 rows, while in an
+// What the order is for: of grains side by side in a cube of 32^3, most are in the same chunk of rows, while in an
 // order row by row of the lattice none of the neighbours in z is.
 TEST(SpatialOrder, KeepsNeighboursTogether) {
   constexpr std::size_t side = 32;
@@ -41,11 +43,12 @@ TEST(SpatialOrder, KeepsNeighboursTogether) {
     x.emplace_back(double(k % side), double(k / side % side), double(k / side / side));
   const std::vector<std::uint32_t> order = spatial_order(x, 1);
   std::vector<std::size_t> chunk(x.size());
-  for (std::size_t r = 0; r < order.size(); ++r) chunk[order[r]] = r / 256;
+  for (std::size_t r = 0; r < order.size(); ++r) chunk[order[r]] = r / chunk_rows;
   std::size_t together = 0, pairs = 0;
   for (std::size_t k = 0; k + side * side < x.size(); ++k, ++pairs) together += chunk[k] == chunk[k + side * side];
-  // A chunk is a block of 8 x 8 x 4 cells: 3 of 4 neighbours along its shortest edge are in it.
-  EXPECT_NEAR(double(together) / double(pairs), 3.0 / 4.0, 0.05);
+  // A chunk is a block of 8 x 8 x 8 cells: 7 of 8 neighbours along an edge are in it.
+  static_assert(chunk_rows == 512);
+  EXPECT_NEAR(double(together) / double(pairs), 7.0 / 8.0, 0.05);
 }
 
 }  // namespace

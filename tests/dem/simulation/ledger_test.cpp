@@ -155,12 +155,12 @@ TEST(Ledger, OnlyTheIncrementalSpringGainsEnergyByUnloading) {
 }
 
 TEST(Ledger, IsTheSameForAnyNumberOfThreadsAndAfterARestart) {
-  const Particles grains = support::packed_cube(8, 1e-7, 0.1, 7);
+  const Particles grains = support::packed_cube(12, 1e-7, 0.1, 7);
   dem::Setup setup = support::glass_setup(1e-7);
   setup.keep_ledger = true;
   setup.law = choose_law({.rolling = "elastic_plastic"});
-  setup.walls = {Wall{"floor", 0, Plane{Vec3(0, 0, -3.75e-3), Vec3::UnitZ()}, {}},
-                 Wall{"lid", 0, Plane{Vec3(0, 0, 3.75e-3), -Vec3::UnitZ()}, {Vec3::Zero(), Vec3(0, 0, -0.1), Vec3::Zero()}}};
+  setup.walls = {Wall{"floor", 0, Plane{Vec3(0, 0, -5.6e-3), Vec3::UnitZ()}, {}},
+                 Wall{"lid", 0, Plane{Vec3(0, 0, 5.6e-3), -Vec3::UnitZ()}, {Vec3::Zero(), Vec3(0, 0, -0.1), Vec3::Zero()}}};
   std::vector<Ledger> books;
   for (const int threads : {1, 2, 3}) {
     omp_set_num_threads(threads);
