@@ -443,7 +443,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
     } else if (activity.level > in.due) {
       continue;
     }
-    if (b + 1 < chunk.end && pairs.activity[b + 1].acts) prefetch(in, pairs.block[b + 1], out);
+    if (b + 1 < chunk.end && pairs.activity[b + 1].acts && pairs.activity[b + 1].level <= in.due) prefetch(in, pairs.block[b + 1], out);
     evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk);
     activity.wake = in.odometer;
     evaluations += {1, std::uint64_t{1} << activity.level, 0, 0};
@@ -762,13 +762,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
 template <class Law, bool Keep>
 void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, std::size_t number,
                     const ForceOutput& out) {
-  const std::size_t grains = in.level.size(), begin = number * chunk_rows, end = std::min(begin + chunk_rows, grains);
-  for (std::size_t i = begin; i < end; ++i)
-    if (in.level[i] <= in.due) {
-      out.forces[i] = ForceRow{};
-      out.asked[i] = in.highest;
-    }
-  out.forces[grains + number] = ForceRow{};
+  out.forces[in.level.size() + number] = ForceRow{};
   evaluate_pair_chunk<Law, Keep>(law, in, pairs, number, out);
   for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w)
     evaluate_wall_chunk<Law, Keep>(law, in, walls, walls.chunk[w], out);

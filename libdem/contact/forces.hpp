@@ -30,10 +30,11 @@ struct ForceInput {
 struct ForceOutput {
   LargeArray<ForceRow>& forces;     // and the phantoms'
   std::vector<std::uint8_t>& asked;  // [N], the finest level that an evaluated contact asks of the grain; and the phantoms'
+  static constexpr std::uint8_t nothing_asked = 255;
 };
 
 // Evaluates all contacts that are due with the law; memory and, where one is kept, the ledger sums of the stores' chunks change.
-// The rows of grains that are due receive the sums over these contacts. Returns the largest overlap over the smaller radius.
+// To the rows of grains that are due come the sums over these contacts: they must be zero, and what is asked nothing. Returns the largest overlap over the smaller radius.
 //
 // Calls finish(d) once for each of the due chunks, by its row in ForceInput::due_chunks, when all forces on its grains are there:
 // as soon as that is, while they are still in a cache, from whichever thread. Pairs belong to the chunk of their first grain and

@@ -29,6 +29,8 @@ struct Resolution {
 
 // Steps between evaluations.
 inline double stride(std::uint8_t level) { return double(1U << level); }
+// 2^-level, without a division: the exponent's bits of a double.
+inline double per_stride(std::uint8_t level) { return std::bit_cast<double>((1023 - std::uint64_t{level}) << 52); }
 
 // The highest level that is due at this step.
 inline std::uint8_t due_at(std::uint64_t step, std::uint8_t highest) {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "libdem/contact/forces.hpp"
+
 namespace dem {
 
 GrainStore make_grain_store(Particles particles, const std::vector<Material>& materials) {
@@ -31,7 +33,7 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   const std::vector<std::uint32_t> row_before = std::move(grains.row_of);
   grains.row_of.resize(n);
   grains.level.assign(n, 0);
-  grains.asked.assign(n + chunks_of(n), 0);
+  grains.asked.assign(n + chunks_of(n), ForceOutput::nothing_asked);
 #pragma omp parallel for schedule(static)
   for (std::size_t r = 0; r < n; ++r) {
     const std::uint32_t i = grains.order[r];

@@ -440,7 +440,7 @@ struct Simulation::Engine {
   }
 
   template <bool Levels>
-  void kick_and_drift(std::size_t i, Motion& motion) {
+  [[gnu::always_inline]] inline void kick_and_drift(std::size_t i, Motion& motion) {
     const Vec4 three(1, 1, 1, 0);
     Vec4 faster = (kick[i] * three).cwiseProduct(grains.forces[i].force), spun = turn[i] * grains.forces[i].torque;
     GrainRow& grain = grains.rows[i];
@@ -455,12 +455,19 @@ struct Simulation::Engine {
     grain.arrival = velocity + 0.5 * three.cwiseProduct(faster);
     if constexpr (Levels) {
       grain.place += setup.step * stride(grains.level[i]) * velocity;
-      grain.arrival[3] = 1 / stride(grains.level[i]);
+      grain.arrival[3] = per_stride(grains.level[i]);
       grains.spun[i] = 0.5 * spun;
       motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(setup.levels - grains.level[i])) * faster.cwiseAbs());
     } else {
       grain.place += setup.step * velocity;
     }
+    expect_forces(i);
+  }
+
+  // The row of forces is in a cache now, and is not when the next are added to it.
+  void expect_forces(std::size_t i) {
+    grains.forces[i] = ForceRow{};
+    grains.asked[i] = ForceOutput::nothing_asked;
   }
 
   // Condition: all are due.
@@ -608,6 +615,7 @@ struct Simulation::Engine {
     due = setup.levels;
     due_chunks.resize(chunk_level.size());
     std::iota(due_chunks.begin(), due_chunks.end(), 0U);
+    for (std::size_t i = 0; i < size(); ++i) expect_forces(i);
     evaluate_with(true, true, [](std::size_t) {});  // so that the last frame shows the forces
     stop_for_overlap(guarded());
   }

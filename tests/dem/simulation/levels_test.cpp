@@ -41,6 +41,7 @@ TEST(Levels, ResolveWhatTheirFormulaSays) {
   const double mass = c.root_mass * c.root_mass;
   for (std::uint8_t level = 0; level < 8; ++level) {
     const double h = r.step * stride(level);
+    EXPECT_EQ(per_stride(level), 1 / stride(level));
     // (1): omega h = 2 accuracy.
     const double radius = std::pow(2 * r.accuracy / h, 2) * mass / (2 * c.effective_modulus);
     EXPECT_TRUE(resolved(level, scale, 0.999 * radius, 0, 1));
