@@ -781,6 +781,13 @@ void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due
   }
 }
 
+// Stays awake, but gives the processor to whoever else wants it.
+template <class Condition>
+void wait_until(Condition condition) {
+  for (int spins = 0; !condition(); ++spins)
+    if (spins > 100) std::this_thread::yield();
+}
+
 bool pending(PairContacts::Chunk& chunk) { return std::atomic_ref(chunk.pending).load(std::memory_order_acquire) != 0; }
 
 // Due chunks that one thread begins with: neighbours in space, so that it finds in its own caches what pairs that cross chunks share. Who
@@ -800,6 +807,7 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
   for (const std::uint32_t number : in.due_chunks) pairs.chunk[number].pending = 1;
   const std::size_t threads = count >= few_chunks ? std::size_t(omp_get_max_threads()) : 1;
   std::vector<Share> shares(threads);
+  std::atomic<std::size_t> finished = 0;
   for (std::size_t t = 0; t < threads; ++t) {
     shares[t].next = count * t / threads;
     shares[t].end = count * (t + 1) / threads;
@@ -827,10 +835,12 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
     }
     if (before < count) unfinished.push_back(before);
     for (const std::size_t k : unfinished) {
-      for (int spins = 0; !ready(k); ++spins)
-        if (spins > 100) std::this_thread::yield();
+      wait_until([&] { return ready(k); });
       complete(k);
     }
+    // Here, as at the end of the region OpenMP would soon put the thread to sleep, and waking it takes longer than others need.
+    ++finished;
+    wait_until([&] { return finished == std::size_t(omp_get_num_threads()); });
   }
   double largest_overlap = 0;
   for (const std::uint32_t number : in.due_chunks) {

@@ -35,6 +35,24 @@ TEST(Scene, OfARheometerHasItsVesselBladeAndGap) {
   EXPECT_THROW(make_scene(c, {more}), CaseError);
 }
 
+// A vessel is open: what a jam shoots upward flies on, v^2/(2 g) high, and comes back; nothing real is thrown at 200 m/s.
+TEST(Scene, AGrainMayBeShotOutOfAVessel) {
+  omp_set_num_threads(1);
+  Case c = ft4('a');
+  c.step = 1e-4;
+  c.levels = 0;
+  const auto throw_at = [&](double speed, double time) {
+    State state;
+    state.particles.add(0, 0, 0.4625e-3, Vec3(8e-3, 0, 0.1), Vec3(0, 0, speed), Vec3::Zero());
+    Simulation sim(make_scene(c).setup, state);
+    for (double t = 0; t < time; t += 0.1) sim.advance(1000);
+    return sim.particles().position[0].z();
+  };
+  EXPECT_NEAR(throw_at(15, 1.5), 0.1 + 15 * 1.5 - 0.5 * 9.81 * 1.5 * 1.5, 0.01);
+  EXPECT_NEAR(throw_at(15, 3.0), 0.1 + 15 * 3.0 - 0.5 * 9.81 * 3.0 * 3.0, 0.02);
+  EXPECT_THROW(throw_at(200, 4), PhysicsError);
+}
+
 TEST(Scene, WithoutARheometerIsWhatItsWallsAre) {
   Case c = ft4('a');
   c.rheometer = false;
