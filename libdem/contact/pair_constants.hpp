@@ -40,6 +40,8 @@ inline double harmonic(double a, double b) { return a * b / (a + b); }
 inline void set_adhesion(PairConstants<double>& c, double effective_radius) {
   c.effective_radius = effective_radius;
   c.adhesion_length = adhesion_length(c.work_of_adhesion, c.effective_radius, c.effective_modulus);
+  // Adhesion that no digit of a force shows is none: overlaps in its lengths would be beyond the numbers that jkr_root() bears.
+  if (c.adhesion_length < 1e-30 * c.effective_radius) c.adhesion_length = 0;
   c.per_adhesion_length = c.adhesion_length > 0 ? 1 / c.adhesion_length : 0;
   c.root_adhesion_radius = std::sqrt(std::sqrt(c.adhesion_length * c.effective_radius));
 }

@@ -95,6 +95,17 @@ TEST(Jkr, WithoutAdhesionItIsHertz) {
   }
 }
 
+// J/m^2, down to what a double can hold: from some 1e-20 on no digit of the force shows it.
+TEST(Jkr, WithHardlyAnyAdhesionItIsHertzToo) {
+  for (const double work : {1e-20, 1e-30, 1e-38, 1e-40, 1e-60, 1e-150, 1e-300}) {
+    const PairConstants<double> c = constants(3.28125e10, work, 2.3125e-4);
+    for (double overlap : {1e-6, 1e-5, 1e-4}) {
+      const double hertz = Hertz::evaluate(overlap, c).elastic;
+      EXPECT_NEAR(Jkr::evaluate(overlap, c).elastic, hertz, 1e-14 * hertz) << work;
+    }
+  }
+}
+
 TEST(Jkr, APackGivesTheSameBitsAsSingleNumbers) {
   const PairConstants<double> c = constants(3.28125e10, 0.274, 2.3125e-4);
   PairConstants<Pack> packed{};
