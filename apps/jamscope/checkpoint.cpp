@@ -194,6 +194,7 @@ void write_state(jam::h5::File& f, const dem::State& s) {
     f.set_attribute("/state/layout", "odometer", layout.odometer);
     f.set_attribute("/state/layout", "next_look", layout.next_look);
     write_arrays(f, "/state/layout/", layout, layout_arrays);
+    f.write("/state/layout/reach", layout.reach, "m", "how far each grain may go until the lists must be built again, rows of the run");
     if (!layout.grain_level.empty()) {
       f.make_group("/state/layout/levels");
       f.set_attribute("/state/layout/levels", "foresight", layout.foresight);
@@ -232,6 +233,8 @@ dem::State read_state(const jam::h5::File& f) {
     layout.odometer = f.attribute<double>("/state/layout", "odometer");
     layout.next_look = f.attribute<double>("/state/layout", "next_look");
     read_arrays(f, "/state/layout/", layout, layout_arrays);
+    // Programs up to 2026-11 built their lists with half the skin for each grain.
+    layout.reach = f.exists("/state/layout/reach") ? f.read<double>("/state/layout/reach") : std::vector<double>(p.size(), 0.5 * layout.skin);
     if (f.exists("/state/layout/levels")) {
       layout.foresight = f.attribute<double>("/state/layout/levels", "foresight");
       read_arrays(f, "/state/layout/levels/", layout, level_arrays);

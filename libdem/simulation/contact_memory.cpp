@@ -84,7 +84,7 @@ Lanes list_pairs(const ListInput& in, const GrainStore& grains, const Memory& me
   std::vector<double> radius(n);
   for (std::size_t r = 0; r < n; ++r) {
     position[r] = grains.rows[r].position();
-    radius[r] = grains.rows[r].radius();
+    radius[r] = grains.rows[r].radius() + grains.listed[r][3];
   }
   const PairIndex index(memory, n);
   const auto level = [&](std::uint32_t i, std::uint32_t j) -> std::optional<std::uint8_t> {
@@ -92,7 +92,7 @@ Lanes list_pairs(const ListInput& in, const GrainStore& grains, const Memory& me
     if (known < 0) return std::nullopt;
     return memory.pairs[std::size_t(known)].level;
   };
-  return order_lanes(build_pair_list(position, radius, in.skin), grains.table(), in.materials.size, level);
+  return order_lanes(build_pair_list(position, radius, 0), grains.table(), in.materials.size, level);
 }
 
 PairContacts make_pair_contacts(const ListInput& in, const Lanes& lanes, const GrainStore& grains, const Memory& memory,

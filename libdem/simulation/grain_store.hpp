@@ -24,7 +24,7 @@ struct GrainStore {
   std::vector<double> mass, inertia;  // kg, kg m^2
   std::vector<std::uint8_t> material;
   std::vector<std::uint32_t> id;
-  std::vector<Vec4> listed;           // m, where the grains were when the lists were built; then 0
+  std::vector<Vec4> listed;           // m, where the grains were when the lists were built; how far they may go until they must be again
   std::vector<std::uint8_t> level;    // a grain moves at every 2^level-th step, and lies where it will be then
   std::vector<std::uint8_t> asked;    // the level that its contacts ask for; and phantoms
 

@@ -8,6 +8,7 @@
 
 #include "libdem/contact/forces.hpp"
 #include "libdem/errors.hpp"
+#include "libdem/neighbors/reach.hpp"
 #include "libdem/neighbors/spatial_order.hpp"
 #include "libdem/simulation/contact_memory.hpp"
 #include "libdem/simulation/grain_store.hpp"
@@ -129,7 +130,7 @@ struct Simulation::Engine {
     if (goes_on && state.layout.chunk_rows == chunk_rows)
       restore_lists(state.layout, memory);
     else
-      build_lists(memory);
+      build_lists(memory, {});
     begin_window();
     if (!goes_on) {
       find_due();
@@ -303,12 +304,23 @@ struct Simulation::Engine {
     find_due();
   }
 
-  // Lists of what may touch around the present positions, the grains laid out anew.
-  void build_lists(const Memory& memory) {
+  // m, [N] by the caller's rows: how far the grains have gone since the lists were built.
+  std::vector<double> travelled() const {
+    std::vector<double> far(size());
+    for (std::size_t r = 0; r < size(); ++r) far[grains.order[r]] = (grains.rows[r].place - grains.listed[r]).head<3>().norm();
+    return far;
+  }
+
+  // Lists of what may touch around the present positions, the grains laid out anew. `far`: travelled(), or empty.
+  void build_lists(const Memory& memory, const std::vector<double>& far) {
+    const double little = too_little_left();
     lay_out_rows(spatial_order(grains.caller.position, 2 * mean_radius));
-    for (std::size_t r = 0; r < size(); ++r) grains.listed[r] = quad(grains.rows[r].position(), 0);
+    std::vector<double> far_of_rows(far.size());
+    for (std::size_t r = 0; r < far.size(); ++r) far_of_rows[r] = far[grains.order[r]];
+    const std::vector<double> reach = reaches(far_of_rows, size(), skin, std::max(thinnest_skin(), 2 * little));
+    for (std::size_t r = 0; r < size(); ++r) grains.listed[r] = quad(grains.rows[r].position(), reach[r]);
     listed_step = step;
-    next_look = odometer + 0.5 * skin;
+    next_look = odometer + skin_left();
     fill_lists(list_pairs(list_input(), grains, memory), memory);
   }
 
@@ -316,11 +328,12 @@ struct Simulation::Engine {
   void restore_lists(const State::Layout& layout, const Memory& memory) {
     const std::size_t n = size(), lanes = layout.first.size();
     std::vector<bool> seen(n, false);
-    bool sound = layout.order.size() == n && layout.listed.size() == n && layout.second.size() == lanes &&
+    bool sound = layout.order.size() == n && layout.listed.size() == n && layout.reach.size() == n && layout.second.size() == lanes &&
                  lanes % PairContacts::width == 0 && layout.skin > 0 && std::isfinite(layout.skin) &&
                  std::isfinite(layout.odometer) && std::isfinite(layout.next_look);
     for (std::size_t r = 0; sound && r < n; ++r) {
-      sound = layout.order[r] < n && !seen[layout.order[r]] && layout.listed[r].allFinite();
+      sound = layout.order[r] < n && !seen[layout.order[r]] && layout.listed[r].allFinite() && layout.reach[r] > 0 &&
+              layout.reach[r] <= layout.skin;
       if (sound) seen[layout.order[r]] = true;
     }
     Lanes pairs_of_lanes(sound ? lanes : 0);
@@ -330,7 +343,7 @@ struct Simulation::Engine {
       sound = fit(pairs_of_lanes, grains.table());
     }
     if (!sound) throw CaseError("the stored state has a layout that does not fit its grains");
-    for (std::size_t r = 0; r < n; ++r) grains.listed[r] = quad(layout.listed[r], 0);
+    for (std::size_t r = 0; r < n; ++r) grains.listed[r] = quad(layout.listed[r], layout.reach[r]);
     skin = layout.skin;
     listed_step = layout.listed_step;
     odometer = layout.odometer;
@@ -373,12 +386,15 @@ struct Simulation::Engine {
     walls = make_wall_contacts(list_input(), grains, memory);
   }
 
+  double thinnest_skin() const { return 0.05 * mean_radius; }  // m
+  double thickest_skin() const { return 0.8 * mean_radius; }   // m, with which test C in flow takes 1.2 kB a grain
+
   // Thin lists hold little more than the contacts, thick ones are built less often. The aim is a list that lasts a few hundred
   // steps; forces do not depend on it.
   void adapt_skin() {
     const std::uint64_t lasted = (step - listed_step) / stride_of_all();
-    if (lasted < 200) skin = std::min(1.5 * skin, mean_radius);
-    if (lasted > 2000) skin = std::max(0.8 * skin, 0.05 * mean_radius);
+    if (lasted < 200) skin = std::min(1.5 * skin, thickest_skin());
+    if (lasted > 2000) skin = std::max(0.8 * skin, thinnest_skin());
   }
 
   // What evaluate() does to the grains of a chunk that are due, when the contacts' forces on them are there.
@@ -502,13 +518,25 @@ struct Simulation::Engine {
     return setup.levels == 0 ? 0 : 2 * setup.step * double(stride_of_all()) * closing_speed(0);
   }
 
-  // m, of the skin of the lists: what two bodies may still come nearer until the lists must be built again.
+  // m, what the odometer may still gain until the lists must be built again: of each grain's reach, twice as two may near each
+  // other so, and of the skin between grains and walls.
   double skin_left() const {
-    double travel2 = 0;
-#pragma omp parallel for schedule(static) reduction(max : travel2) if (pairs.chunk.size() >= few_chunks)
-    for (std::size_t i = 0; i < size(); ++i) travel2 = std::max(travel2, (grains.rows[i].place - grains.listed[i]).head<3>().squaredNorm());
-    const double travel = std::sqrt(travel2), wall_travel = wall_speed * setup.step * double(step - listed_step);
-    return skin - travel - std::max(travel, wall_travel);
+    double least = 0.5 * skin, furthest = 0;
+#pragma omp parallel for schedule(static) reduction(min : least) reduction(max : furthest) if (pairs.chunk.size() >= few_chunks)
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Vec4 way = grains.rows[i].place - grains.listed[i];
+      const double travel = way.head<3>().norm();
+      least = std::min(least, grains.listed[i][3] - travel);
+      furthest = std::max(furthest, travel);
+    }
+    return std::min(2 * least, skin - furthest - wall_speed * setup.step * double(step - listed_step));
+  }
+
+  // m, on the odometer. Lists with less than this left are used up: they must last until all are due again, and to look costs a pass over
+  // the grains, which takes as long as a few chunks take for a step.
+  double too_little_left() const {
+    const double steps = std::max(2 * double(stride_of_all()), 8.0);  // twice as many as needed, as speeds may double
+    return 0.01 * skin + steps * setup.step * closing_speed(0);
   }
 
   void begin_window() {
@@ -603,11 +631,11 @@ struct Simulation::Engine {
   void renew_lists() {
     const double left = skin_left();
     next_look = odometer + 0.999 * left;
-    if (left - travel_until_all_due() > 0.01 * skin) return;
+    if (left > too_little_left()) return;
     guard();
     adapt_skin();
     show(grains);
-    build_lists(gather(grains, pairs, walls));
+    build_lists(gather(grains, pairs, walls), travelled());
     ++effort.lists;
   }
 
@@ -703,6 +731,7 @@ State Simulation::state() const {
     state.force[grains.order[r]] = grains.forces[r].force.head<3>();
     state.torque[grains.order[r]] = grains.forces[r].torque.head<3>();
     state.layout.listed.push_back(grains.listed[r].head<3>());
+    state.layout.reach.push_back(grains.listed[r][3]);
   }
   state.layout.chunk_rows = chunk_rows;
   state.layout.order = grains.order;

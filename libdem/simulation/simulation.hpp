@@ -85,6 +85,7 @@ struct State {
     std::uint64_t chunk_rows = 0;              // of the program that wrote it: another lays the state out anew, with sums in another order
     std::vector<std::uint32_t> order;          // [N] row of `particles` for each row of the run
     std::vector<Vec3> listed;                  // [N] m, where the grains were when the lists were built; rows of the run
+    std::vector<double> reach;                 // [N] m, how far they may go until they must be built again (neighbors/reach.hpp)
     std::vector<std::uint32_t> first, second;  // [lanes] rows of the run (PairContacts)
     std::uint64_t listed_step = 0;
     double skin = 0;                           // m, of the lists

@@ -84,6 +84,35 @@ TEST(Simulation, GivesTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+// A wall pushes into grains of which most lie still, so that reaches differ (neighbors/reach.hpp): whatever overlaps by brute force is
+// among the contacts, whenever one looks.
+TEST(Simulation, ListsMissNoContact) {
+  omp_set_num_threads(1);
+  for (const std::uint8_t levels : {0, 3}) {
+    dem::Setup setup = boxed(5.6e-3);
+    setup.levels = levels;
+    setup.walls[0].motion.velocity = Vec3(2, 0, 0);
+    Simulation sim(setup, fresh(support::packed_cube(12, 1e-7, 0.0, 7)));
+    std::size_t unequal = 0, most = 0;
+    for (int look = 0; look < 25; ++look) {
+      sim.advance(240);
+      const State::Layout layout = sim.state().layout;
+      unequal += *std::min_element(layout.reach.begin(), layout.reach.end()) < 0.5 * layout.skin;
+      const View view = sim.view();
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> overlapping, known;
+      for (std::uint32_t i = 0; i < view.position.size(); ++i)
+        for (std::uint32_t j = i + 1; j < view.position.size(); ++j)
+          if ((view.position[j] - view.position[i]).norm() < view.radius[i] + view.radius[j]) overlapping.emplace_back(i, j);
+      for (const PairRecord& pair : view.pairs) known.emplace_back(pair.i, pair.j);
+      EXPECT_TRUE(std::includes(known.begin(), known.end(), overlapping.begin(), overlapping.end())) << "look " << look;
+      most = std::max(most, overlapping.size());
+    }
+    EXPECT_GT(most, 100u) << int(levels);
+    EXPECT_GT(unequal, 3u) << int(levels);
+    EXPECT_GT(sim.effort().lists, 3u) << int(levels);
+  }
+}
+
 // Grains in several chunks that stir long enough for the lists to be built anew between the stops, and right after them.
 TEST(Simulation, ContinuesFromAnyStateExactly) {
   omp_set_num_threads(1);
@@ -187,6 +216,9 @@ TEST(Simulation, RefusesAStateThatDoesNotFitTogether) {
       [](Layout& l) { std::swap(l.first.front(), l.first.back()); },
       [](Layout& l) { l.first.resize(8), l.second.resize(8); },  // contacts without a lane
       [](Layout& l) { l.skin = 0; },
+      [](Layout& l) { l.reach.pop_back(); },
+      [](Layout& l) { l.reach[3] = -1; },
+      [](Layout& l) { l.reach[3] = std::nan(""); },
       [](Layout& l) { l.next_look = std::nan(""); },
   };
   for (std::size_t k = 0; k < damages.size(); ++k) {
