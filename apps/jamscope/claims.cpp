@@ -424,10 +424,18 @@ std::string claim_measures() {
 }
 
 int claims(const ClaimsOptions& options) {
-  const std::vector<Claim> all = read_claims(options.claims);
+  std::vector<Claim> all;
   const std::vector<Summary> summaries = read_summaries(options.runs);
   std::vector<Verdict> verdicts;
-  for (const Claim& claim : all) verdicts.push_back(judge(claim, summaries));
+  for (Claim claim : read_claims(options.claims)) {
+    claim.run += options.variant;
+    if (!claim.against_run.empty()) claim.against_run += options.variant;
+    claim.least_time = options.shortest.value_or(claim.least_time);
+    Verdict verdict = judge(claim, summaries);
+    if (options.only_measured && std::isnan(verdict.value)) continue;
+    all.push_back(std::move(claim));
+    verdicts.push_back(std::move(verdict));
+  }
   switch (options.format) {
     case ClaimsFormat::json: fmt::print("{}\n", json_of(all, verdicts).dump(2)); return 0;
     case ClaimsFormat::markdown: fmt::print("{}", markdown(all, verdicts)); break;

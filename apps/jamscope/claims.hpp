@@ -13,11 +13,12 @@
 //   low = 10.0                               # holds from here
 //   high = 400.0                             # to here; either may be left out
 //
-// and, where the measure uses them, `against_run`, `against_of` (default: `of`), `first`, `values`, `components` (so many numbers of a list are one place).
+// and, where the measure uses them, `observed_time` (the shortest record that counts), `at`, `against_run`, `against_of` (default: `of`), `first`, `values`, `components` (so many numbers of a list are one place).
 //
 // Several runs of one name are repetitions (other seeds): the measure takes the median of them, and its interval goes from the smallest to the
 // largest that any choice of them gives.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ enum class ClaimsFormat { text, markdown, json };
 struct ClaimsOptions {
   std::vector<std::string> runs;  // folders with a summary.json, or such files, or folders of them
   std::string claims;             // file
+  std::string variant;            // asked of runs whose names end so in addition: `ft4_a_down` is `ft4_a_down_flat` with `_flat`
+  std::optional<double> shortest;  // s, of a record that counts, in place of the claims' own `observed_time`
+  bool only_measured = false;     // leaves out what these runs do not measure
   ClaimsFormat format = ClaimsFormat::text;
 };
 

@@ -44,7 +44,7 @@ struct Options {
   std::vector<std::string> overrides;
   bool json = false;
   SimulateOptions simulate;
-  std::string until;
+  std::string until, shortest;
   AnalyzeOptions analyze;
   InspectOptions inspect;
   MetricsOptions metrics;
@@ -59,6 +59,13 @@ struct Options {
 };
 
 const std::map<std::string, LogFormat> log_formats{{"text", LogFormat::text}, {"jsonl", LogFormat::jsonl}};
+
+// s, of an option's text with its unit.
+double time_of(const char* option, const std::string& text) try {
+  return to_si(text, dimension::time);
+} catch (const UnitError& error) {
+  throw UsageError(fmt::format("{} {}", option, error.what()));
+}
 
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides, const char* example) {
   // Without allow_extra_args(false) the option would swallow every argument up to the next option.
@@ -149,13 +156,7 @@ Command add_simulate(CLI::App& app, Options& o) {
   add_log_options(c, s.quiet, s.log_format);
   c.footer("Example:\n  jamscope simulate data/cases/ft4_quick.toml -o quick --threads 2");
   return [&o] {
-    if (!o.until.empty()) {
-      try {
-        o.simulate.until = to_si(o.until, dimension::time);
-      } catch (const UnitError& error) {
-        throw UsageError(fmt::format("--until {}", error.what()));
-      }
-    }
+    if (!o.until.empty()) o.simulate.until = time_of("--until", o.until);
     o.simulate.command_line = o.command_line;
     return simulate(o.simulate);
   };
@@ -281,8 +282,16 @@ Command add_claims(CLI::App& app, Options& o) {
   c.add_option("--claims", m.claims, "TOML file of [claim.NAME] tables")->required()->type_name("FILE");
   const std::map<std::string, ClaimsFormat> formats{{"text", ClaimsFormat::text}, {"markdown", ClaimsFormat::markdown}, {"json", ClaimsFormat::json}};
   c.add_option("--format", m.format, "text (default), markdown or json")->transform(one_of(formats))->type_name("text|markdown|json");
+  c.add_option("--variant", m.variant, "ask the claims of runs whose names end so as well: with _flat, of ft4_a_down_flat in place of ft4_a_down")
+      ->type_name("SUFFIX");
+  c.add_option("--shortest", o.shortest, "the shortest record that counts, for example \"0.05 s\"; default: what each claim asks for (observed_time)")
+      ->type_name("TIME");
+  c.add_flag("--measured", m.only_measured, "leave out the claims that these runs do not measure");
   c.footer(claim_measures() + "\nExample:\n  jamscope claims a_down b_down c_down --claims data/reference/paper_claims.toml");
-  return [&o] { return claims(o.claims); };
+  return [&o] {
+    if (!o.shortest.empty()) o.claims.shortest = time_of("--shortest", o.shortest);
+    return claims(o.claims);
+  };
 }
 
 Command add_report(CLI::App& app, Options& o) {
