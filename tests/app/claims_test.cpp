@@ -196,7 +196,8 @@ TEST_F(ClaimsProgram, AreAskedOfAVariantOfTheRuns) {
 // The tables in data/reference/paper are what the program prints of the runs beside them.
 TEST_F(ClaimsProgram, TheCommittedTablesAreOfTheCommittedRuns) {
   const std::string data = JAMSCOPE_DATA_DIR;
-  for (const auto& [options, table] : {std::pair{"", "claims"}, std::pair{" --variant _flat --shortest 0.04s --measured", "claims_flat_tips"}}) {
+  for (const auto& [options, table] : {std::pair{"", "claims"}, std::pair{" --variant _flat --shortest 0.04s --measured", "claims_flat_tips"},
+                                       std::pair{" --variant _thin_flat --shortest 0.2s --measured", "claims_thin_flat_tips"}}) {
     const std::string asked = fmt::format("{0}/reference/paper --claims {0}/reference/paper_claims.toml{1} --format markdown", data, options);
     std::string printed = run_program("claims " + asked).out;
     for (std::size_t at; (at = printed.find(data)) != std::string::npos;) printed.replace(at, data.size(), "data");
