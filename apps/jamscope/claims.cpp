@@ -426,6 +426,8 @@ std::string claim_measures() {
 int claims(const ClaimsOptions& options) {
   std::vector<Claim> all;
   const std::vector<Summary> summaries = read_summaries(options.runs);
+  if (std::none_of(summaries.begin(), summaries.end(), [&](const Summary& s) { return s.name.ends_with(options.variant); }))
+    throw UsageError(fmt::format("--variant {}: no run has a name that ends so", options.variant));
   std::vector<Verdict> verdicts;
   for (Claim claim : read_claims(options.claims)) {
     claim.run += options.variant;

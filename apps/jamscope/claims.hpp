@@ -13,7 +13,8 @@
 //   low = 10.0                               # holds from here
 //   high = 400.0                             # to here; either may be left out
 //
-// and, where the measure uses them, `observed_time` (the shortest record that counts), `at`, `against_run`, `against_of` (default: `of`), `first`, `values`, `components` (so many numbers of a list are one place).
+// and, where the measure uses them, `observed_time` (the shortest record that counts), `at`, `against_run`,
+// `against_of` (default: `of`), `first`, `values`, `components` (so many numbers of a list are one place).
 //
 // Several runs of one name are repetitions (other seeds): the measure takes the median of them, and its interval goes from the smallest to the
 // largest that any choice of them gives.
@@ -35,7 +36,7 @@ struct ClaimsOptions {
   ClaimsFormat format = ClaimsFormat::text;
 };
 
-// Prints the table to standard output. Returns 0 whatever the verdicts are. Throws dem::CaseError for the claims file, jam::DataError for a summary.
+// Prints the table to standard output. Returns 0 whatever the verdicts are. Throws dem::CaseError for the claims file, jam::DataError for a summary, UsageError for a variant that no run is.
 int claims(const ClaimsOptions& options);
 
 // One line per measure, for the help text.

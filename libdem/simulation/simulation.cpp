@@ -304,10 +304,11 @@ struct Simulation::Engine {
     find_due();
   }
 
-  // m, [N] by the caller's rows: how far the grains have gone since the lists were built.
+  // m, how far the grain of a row has gone since the lists were built; by the caller's rows of all.
+  double travel(std::size_t r) const { return (grains.rows[r].place - grains.listed[r]).head<3>().norm(); }
   std::vector<double> travelled() const {
     std::vector<double> far(size());
-    for (std::size_t r = 0; r < size(); ++r) far[grains.order[r]] = (grains.rows[r].place - grains.listed[r]).head<3>().norm();
+    for (std::size_t r = 0; r < size(); ++r) far[grains.order[r]] = travel(r);
     return far;
   }
 
@@ -524,10 +525,9 @@ struct Simulation::Engine {
     double least = 0.5 * skin, furthest = 0;
 #pragma omp parallel for schedule(static) reduction(min : least) reduction(max : furthest) if (pairs.chunk.size() >= few_chunks)
     for (std::size_t i = 0; i < size(); ++i) {
-      const Vec4 way = grains.rows[i].place - grains.listed[i];
-      const double travel = way.head<3>().norm();
-      least = std::min(least, grains.listed[i][3] - travel);
-      furthest = std::max(furthest, travel);
+      const double way = travel(i);
+      least = std::min(least, grains.listed[i][3] - way);
+      furthest = std::max(furthest, way);
     }
     return std::min(2 * least, skin - furthest - wall_speed * setup.step * double(step - listed_step));
   }

@@ -191,6 +191,9 @@ TEST_F(ClaimsProgram, AreAskedOfAVariantOfTheRuns) {
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all.at(0)["value"], 8.0);
   EXPECT_EQ(run_program(claims(text) + " --shortest 3").code, 2);
+  const Outcome misspelt = run_program(claims(text) + " --variant _flta --measured");
+  EXPECT_EQ(misspelt.code, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("--variant _flta: no run has a name that ends so"));
 }
 
 // The tables in data/reference/paper are what the program prints of the runs beside them.

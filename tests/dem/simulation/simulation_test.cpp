@@ -218,6 +218,7 @@ TEST(Simulation, RefusesAStateThatDoesNotFitTogether) {
       [](Layout& l) { l.skin = 0; },
       [](Layout& l) { l.reach.pop_back(); },
       [](Layout& l) { l.reach[3] = -1; },
+      [](Layout& l) { l.reach[3] = 2 * l.skin; },
       [](Layout& l) { l.reach[3] = std::nan(""); },
       [](Layout& l) { l.next_look = std::nan(""); },
   };
