@@ -297,14 +297,14 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   if (const Pack late_i = late(steps, arrival_i[3]), late_j = late(steps, arrival_j[3]); any_of(late_i + late_j > Pack(0.0))) {
     const auto spun_i = load_quads([&](std::size_t k) { return in.spun[block.first[lane + k]].data(); });
     const auto spun_j = load_quads([&](std::size_t k) { return in.spun[block.second[lane + k]].data(); });
-    touch.spin_i = touch.spin_i - Triple<Pack>{spun_i[0], spun_i[1], spun_i[2]} * late_i;
-    touch.spin_j = touch.spin_j - Triple<Pack>{spun_j[0], spun_j[1], spun_j[2]} * late_j;
+    touch.spin_i = subtract_product(touch.spin_i, Triple<Pack>{spun_i[0], spun_i[1], spun_i[2]}, late_i);
+    touch.spin_j = subtract_product(touch.spin_j, Triple<Pack>{spun_j[0], spun_j[1], spun_j[2]}, late_j);
     const Triple<Pack> changed = Triple<Pack>{arrival_i[0] - vx_i, arrival_i[1] - vy_i, arrival_i[2] - vz_i} * late_i -
                                  Triple<Pack>{arrival_j[0] - vx_j, arrival_j[1] - vy_j, arrival_j[2] - vz_j} * late_j;
     centres = centres - changed;
-    arriving = arriving - changed * Pack(2.0);
+    arriving = subtract_product(arriving, changed, Pack(2.0));
   }
-  touch.velocity = centres + cross(touch.spin_i * touch.arm_i + touch.spin_j * touch.arm_j, touch.normal);
+  touch.velocity = centres + cross(multiply_add(touch.spin_i, touch.arm_i, touch.spin_j * touch.arm_j), touch.normal);
   touch.closing = dot(arriving, touch.normal);
   r.inverse_smaller_radius = larger(inverse_i, inverse_j);
   return r;
@@ -340,10 +340,10 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
   const Pack pushed = f.normal.elastic + f.damping;
   const Pack weight = only(hold, Pack(steps)), pressed = only(hold, larger(pushed, Pack(0.0))), zero(0.0);
-  const Triple<Pack> force = only(hold, (tangential - touch.normal * pushed) * weight);
+  const Triple<Pack> force = only(hold, subtract_product(tangential, touch.normal, pushed) * weight);
   const Triple<Pack> twist = cross(touch.normal, tangential);
-  const Triple<Pack> torque_i = only(hold, (twist * touch.arm_i + f.rolling.on_i) * weight);
-  const Triple<Pack> torque_j = only(hold, (twist * touch.arm_j + f.rolling.on_j) * weight);
+  const Triple<Pack> torque_i = only(hold, multiply_add(twist, touch.arm_i, f.rolling.on_i) * weight);
+  const Triple<Pack> torque_j = only(hold, multiply_add(twist, touch.arm_j, f.rolling.on_j) * weight);
   largest_overlap = larger(largest_overlap, only(hold, touch.overlap * lanes.inverse_smaller_radius));
   for_each_row({force.x, force.y, force.z, pressed, torque_i.x, torque_i.y, torque_i.z, zero},
                [&](std::size_t k, const auto& row) { add_row(out.forces[block.first[lane + k]], row); });

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <experimental/simd>
 
+#if defined(__FMA__)
+#include <immintrin.h>
+#endif
+
 #if defined(__clang__) && defined(__AVX512F__) && defined(_GLIBCXX_EXPERIMENTAL_SIMD)
 #error "libstdc++'s std::simd blends AVX-512 packs wrongly under Clang (_S_blend_avx512): add -mno-avx512f"
 #endif
@@ -46,6 +50,50 @@ inline Pack to_double(const SinglePack& a) { return std::experimental::static_si
 inline float square_root(float a) { return std::sqrt(a); }
 inline SinglePack square_root(const SinglePack& a) { return std::experimental::sqrt(a); }
 
+// a b + c and c - a b, rounded once where processors that we compile for can do that in one operation: chains of operations, of which the law
+// consists, are shorter by a sum each. Elsewhere rounded twice, so that the last digits differ. Written out where it is wanted, as a compiler
+// that contracts by itself may do so in one copy of a formula and not in another.
+#if defined(__FP_FAST_FMA)
+inline double multiply_add(double a, double b, double c) { return std::fma(a, b, c); }
+inline float multiply_add(float a, float b, float c) { return std::fma(a, b, c); }
+inline double subtract_product(double c, double a, double b) { return std::fma(-a, b, c); }
+#else
+inline double multiply_add(double a, double b, double c) { return a * b + c; }
+inline float multiply_add(float a, float b, float c) { return a * b + c; }
+inline double subtract_product(double c, double a, double b) { return c - a * b; }
+#endif
+#if defined(__FMA__) && defined(__AVX512F__)
+inline Pack multiply_add(const Pack& a, const Pack& b, const Pack& c) {
+  return Pack(_mm512_fmadd_pd(static_cast<__m512d>(a), static_cast<__m512d>(b), static_cast<__m512d>(c)));
+}
+inline Pack subtract_product(const Pack& c, const Pack& a, const Pack& b) {
+  return Pack(_mm512_fnmadd_pd(static_cast<__m512d>(a), static_cast<__m512d>(b), static_cast<__m512d>(c)));
+}
+inline SinglePack multiply_add(const SinglePack& a, const SinglePack& b, const SinglePack& c) {
+  return SinglePack(_mm256_fmadd_ps(static_cast<__m256>(a), static_cast<__m256>(b), static_cast<__m256>(c)));
+}
+#elif defined(__FMA__)
+inline Pack multiply_add(const Pack& a, const Pack& b, const Pack& c) {
+  return Pack(_mm256_fmadd_pd(static_cast<__m256d>(a), static_cast<__m256d>(b), static_cast<__m256d>(c)));
+}
+inline Pack subtract_product(const Pack& c, const Pack& a, const Pack& b) {
+  return Pack(_mm256_fnmadd_pd(static_cast<__m256d>(a), static_cast<__m256d>(b), static_cast<__m256d>(c)));
+}
+inline SinglePack multiply_add(const SinglePack& a, const SinglePack& b, const SinglePack& c) {
+  return SinglePack(_mm_fmadd_ps(static_cast<__m128>(a), static_cast<__m128>(b), static_cast<__m128>(c)));
+}
+#else
+inline Pack multiply_add(const Pack& a, const Pack& b, const Pack& c) {
+  return Pack([&](auto k) { return multiply_add(double(a[k]), double(b[k]), double(c[k])); });
+}
+inline Pack subtract_product(const Pack& c, const Pack& a, const Pack& b) {
+  return Pack([&](auto k) { return subtract_product(double(c[k]), double(a[k]), double(b[k])); });
+}
+inline SinglePack multiply_add(const SinglePack& a, const SinglePack& b, const SinglePack& c) {
+  return SinglePack([&](auto k) { return multiply_add(float(a[k]), float(b[k]), float(c[k])); });
+}
+#endif
+
 // Three components of a number type. Eigen's matrices expect comparisons to give one bool, which a pack cannot.
 template <class Real>
 struct Triple {
@@ -66,11 +114,20 @@ Triple<Real> operator*(const Triple<Real>& a, const Real& s) {
 }
 template <class Real>
 Real dot(const Triple<Real>& a, const Triple<Real>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
 }
 template <class Real>
 Triple<Real> cross(const Triple<Real>& a, const Triple<Real>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return {subtract_product(a.y * b.z, a.z, b.y), subtract_product(a.z * b.x, a.x, b.z), subtract_product(a.x * b.y, a.y, b.x)};
+}
+// a s + b and b - a s.
+template <class Real>
+Triple<Real> multiply_add(const Triple<Real>& a, const Real& s, const Triple<Real>& b) {
+  return {multiply_add(a.x, s, b.x), multiply_add(a.y, s, b.y), multiply_add(a.z, s, b.z)};
+}
+template <class Real>
+Triple<Real> subtract_product(const Triple<Real>& b, const Triple<Real>& a, const Real& s) {
+  return {subtract_product(b.x, a.x, s), subtract_product(b.y, a.y, s), subtract_product(b.z, a.z, s)};
 }
 template <class Real>
 Triple<Real> select(const Mask<Real>& mask, const Triple<Real>& a, const Triple<Real>& b) {

@@ -35,10 +35,17 @@ Real jkr_root(const Real& delta) {
                   p7 = 0.0012244462369246199f;
   const Real t = larger(delta - jkr_break, Real(1e-30));  // the least that leaves no 0/0 below; its root is y_c
   const auto q = square_root(to_single(t)), r2 = q + float(c), x = square_root(r2) * (1.0f / r2), x2 = x * x;
-  const auto guess = q * x * (((p0 + p1 * x) + x2 * (p2 + p3 * x)) + x2 * x2 * ((p4 + p5 * x) + x2 * (p6 + p7 * x)));
-  const Real per_slope = to_double(1.0f / (guess * (float(2 * a) + guess * (float(3 * b) + 4.0f * guess))));
+  using Single = std::remove_const_t<decltype(q)>;
+  const auto line = [&](float slope, float start) { return multiply_add(Single(slope), Single(x), Single(start)); };
+  const Single low = multiply_add(Single(x2), line(p3, p2), line(p1, p0)), high = multiply_add(Single(x2), line(p7, p6), line(p5, p4));
+  const Single guess = q * x * multiply_add(Single(x2 * x2), high, low);
+  const Single slope = guess * multiply_add(guess, multiply_add(Single(4.0f), guess, Single(float(3 * b))), Single(float(2 * a)));
+  const Real per_slope = to_double(Single(1.0f / slope));
   Real e = to_double(guess);
-  for (int k = 0; k < 2; ++k) e = e - (e * e * (a + e * (b + e)) - t) * per_slope;
+  for (int k = 0; k < 2; ++k) {
+    const Real excess = multiply_add(e * e, multiply_add(e, b + e, a), -1.0 * t);
+    e = subtract_product(e, excess, per_slope);
+  }
   return y_c + e;
 }
 
@@ -47,7 +54,7 @@ Real jkr_root(const Real& delta) {
 template <class Real>
 Real jkr_energy(const Real& y) {
   const Real y3 = y * y * y, y4 = y3 * y;
-  return y4 * ((32.0 / 45.0) * y3 * y3 - (16.0 / 9.0) * y3 + 2.0 / 3.0);
+  return y4 * multiply_add(y3, multiply_add(32.0 / 45.0, y3, -16.0 / 9.0), 2.0 / 3.0);
 }
 
 // Where a JKR contact forms and where it breaks, as roots y of the quartic. Energy is lost where the two differ: the
@@ -76,7 +83,7 @@ struct JkrForce {
     const Real pull_off = (1.5 * std::numbers::pi) * c.work_of_adhesion * c.effective_radius;
     const Real repulsive = pull_off * (16.0 / 9.0) * y3 * y3;  // 4 E* a^3/(3 R*)
     const Real root_radius = c.root_adhesion_radius * y, a = root_radius * root_radius;
-    const NormalForce<Real> jkr = {repulsive - pull_off * (8.0 / 3.0) * y3,
+    const NormalForce<Real> jkr = {subtract_product(repulsive, pull_off * (8.0 / 3.0), y3),
                                    root_radius,
                                    repulsive,
                                    pull_off,

@@ -19,7 +19,7 @@ inline constexpr double largest_share_of_spin = 0.1;
 
 template <class Real>
 Triple<Real> without_twist(const Triple<Real>& spin, const Triple<Real>& normal) {
-  return spin - normal * dot(spin, normal);
+  return subtract_product(spin, normal, dot(spin, normal));
 }
 
 // -size w/|w|, no more than the largest share of the spin.
@@ -98,7 +98,7 @@ struct ElasticPlasticRolling {
     const Triple<Real> w = rolling::without_twist(touch.spin_i - touch.spin_j, touch.normal);
     const Real lever = c.rolling_friction * c.effective_radius;
     const Real stiffness = 4.5 * c.effective_modulus * normal.contact_radius() * lever * lever;
-    const Triple<Real> trial = rolling::without_twist(springs.rolling, touch.normal) - w * (stiffness * dt.length);
+    const Triple<Real> trial = subtract_product(rolling::without_twist(springs.rolling, touch.normal), w, Real(stiffness * dt.length));
     const Real limit = lever * larger(normal.elastic, Real(0.0));
     const Real size2 = dot(trial, trial);
     const Mask<Real> plastic = size2 > limit * limit;
@@ -106,7 +106,7 @@ struct ElasticPlasticRolling {
     // Explicit damping, and so no more than the largest share of the spin.
     const Real damping = smaller(2.0 * c.rolling_damping * square_root(3.5 * c.effective_inertia * stiffness),
                                  Real(rolling::largest_share_of_spin * c.effective_inertia * dt.rate));
-    const Triple<Real> on_i = springs.rolling - w * select(plastic, Real(0.0), damping);
+    const Triple<Real> on_i = subtract_product(springs.rolling, w, select(plastic, Real(0.0), damping));
     const Mask<Real> stiff = stiffness > Real(0.0);
     const Real energy = select(stiff, 0.5 * dot(springs.rolling, springs.rolling) / select(stiff, stiffness, Real(1.0)), Real(0.0));
     return {on_i, rolling::negative(on_i), energy};

@@ -27,21 +27,21 @@ struct MindlinSpring {
   static TangentialForce<Real> evaluate(const Touch<Real>& touch, const PairConstants<Real>& c, const NormalForce<Real>& normal,
                                         const Real& load, const Real& damping, Springs<Real>& springs, const Real& dt) {
     const Real v_n = dot(touch.velocity, touch.normal);
-    const Triple<Real> v_t = touch.velocity - touch.normal * v_n;
+    const Triple<Real> v_t = subtract_product(touch.velocity, touch.normal, v_n);
 
     const Triple<Real> old = springs.tangential;
     const Real length2 = dot(old, old);
-    const Triple<Real> flat = old - touch.normal * dot(old, touch.normal);
+    const Triple<Real> flat = subtract_product(old, touch.normal, dot(old, touch.normal));
     const Real flat2 = dot(flat, flat);
     const Mask<Real> turn = flat2 > Real(0.0);
     const Real radius = normal.contact_radius();
     const Real keep = select(turn, square_root(length2 / select(turn, flat2, Real(1.0))), Real(0.0));
     const Triple<Real> carried = flat * (keep * Variant::share(springs.contact_radius, radius));
-    const Triple<Real> trial = carried + v_t * dt;
+    const Triple<Real> trial = multiply_add(v_t, dt, carried);
 
     const Real k_t = 8.0 * c.effective_shear * radius;
     const Triple<Real> viscous = v_t * (Real(0.0) - damping);
-    const Triple<Real> unlimited = trial * (Real(0.0) - k_t) + viscous;
+    const Triple<Real> unlimited = multiply_add(trial, Real(0.0) - k_t, viscous);
     const Real limit = c.friction * load;
     const Real size2 = dot(unlimited, unlimited);
     const Mask<Real> sliding = size2 > limit * limit;

@@ -17,6 +17,7 @@ namespace counting {
 
 struct Counts {
   int sums = 0, products = 0, quotients = 0, roots = 0, choices = 0;  // a choice: comparison, selection, extremum, absolute value
+  int fused = 0;  // a product and a sum in one
 } counts, single_counts;
 
 struct Truth {
@@ -37,6 +38,8 @@ struct Counting {
   friend Counting operator-(Counting a) { return ++counts.sums, -a.value; }
   friend Counting operator*(Counting a, Counting b) { return ++counts.products, a.value * b.value; }
   friend Counting operator/(Counting a, Counting b) { return ++counts.quotients, a.value / b.value; }
+  friend Counting multiply_add(Counting a, Counting b, Counting c) { return ++counts.fused, a.value * b.value + c.value; }
+  friend Counting subtract_product(Counting c, Counting a, Counting b) { return ++counts.fused, c.value - a.value * b.value; }
   friend Truth operator<(Counting a, Counting b) { return ++counts.choices, Truth{a.value < b.value}; }
   friend Truth operator>(Counting a, Counting b) { return ++counts.choices, Truth{a.value > b.value}; }
   friend Truth operator>=(Counting a, Counting b) { return ++counts.choices, Truth{a.value >= b.value}; }
@@ -135,12 +138,14 @@ counting::Counts operations_of_the_law() {
   const counting::Counts of = operations_of_the_law();
   state.counters["sums"] = of.sums;
   state.counters["products"] = of.products;
+  state.counters["fused"] = of.fused;
   state.counters["quotients"] = of.quotients;
   state.counters["roots"] = of.roots;
   state.counters["choices"] = of.choices;
   const counting::Counts& single = counting::single_counts;  // of half the digits
   state.counters["single: sums"] = single.sums;
   state.counters["single: products"] = single.products;
+  state.counters["single: fused"] = single.fused;
   state.counters["single: quotients"] = single.quotients;
   state.counters["single: roots"] = single.roots;
 }
