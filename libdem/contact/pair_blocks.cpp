@@ -102,39 +102,14 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
   pairs.last.assign(keep_ledger ? lanes.size() : 0, {});
   pairs.chunk.assign(chunks, {});
 
-  std::uint32_t crossing = 0;
   std::size_t at = 0;
-  std::vector<std::uint32_t> incoming(chunks + 1, 0);
   for (std::size_t c = 0; c < chunks; ++c) {
     PairContacts::Chunk& chunk = pairs.chunk[c];
     chunk.begin = chunk.inner_end = std::uint32_t(at);
-    for (; at < blocks && chunk_of(lanes[at * width][0]) == c; ++at) {
-      if (chunk_of(lanes[at * width][1]) == c) {
-        chunk.inner_end = std::uint32_t(at + 1);
-        continue;
-      }
-      pairs.kind[at].crossing = crossing;
-      crossing += width;
-      for (std::size_t k = 0; k < width; ++k)
-        if (const std::uint32_t j = lanes[at * width + k][1]; j < grains.size()) ++incoming[chunk_of(j) + 1];
-    }
+    for (; at < blocks && chunk_of(lanes[at * width][0]) == c; ++at)
+      if (chunk_of(lanes[at * width][1]) == c) chunk.inner_end = std::uint32_t(at + 1);
     chunk.end = std::uint32_t(at);
   }
-  pairs.crossing.assign(crossing, {});
-  for (std::size_t c = 0; c < chunks; ++c) {
-    incoming[c + 1] += incoming[c];
-    pairs.chunk[c].incoming_begin = incoming[c];
-    pairs.chunk[c].incoming_end = incoming[c + 1];
-  }
-  pairs.incoming.resize(incoming[chunks]);
-  for (std::uint32_t c = 0; c < chunks; ++c)
-    for (std::uint32_t b = pairs.chunk[c].inner_end; b < pairs.chunk[c].end; ++b)
-      for (std::uint32_t k = 0; k < width; ++k)
-        if (const std::uint32_t j = lanes[b * width + k][1]; j < grains.size()) {
-          pairs.incoming[incoming[chunk_of(j)]++] = {j, pairs.kind[b].crossing + k, b};
-          std::vector<std::uint32_t>& senders = pairs.chunk[chunk_of(j)].senders;
-          if (senders.empty() || senders.back() != c) senders.push_back(c);
-        }
 
 #pragma omp parallel for schedule(static)
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -157,7 +132,37 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
       least = k == 0 ? scale : LevelScale{std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
     }
   }
+  connect_chunks(pairs, grains.size());
   return pairs;
+}
+
+void connect_chunks(PairContacts& pairs, std::size_t grains) {
+  const std::size_t chunks = pairs.chunk.size();
+  const auto for_each_crossing = [&](auto use) {
+    for (std::uint32_t c = 0; c < chunks; ++c)
+      for (std::uint32_t b = pairs.chunk[c].inner_end; b < pairs.chunk[c].end; ++b)
+        for (std::uint32_t k = 0; k < width; ++k)
+          if (const std::uint32_t j = pairs.block[b].second[k]; j < grains) use(c, b, k, j);
+  };
+  std::uint32_t crossing = 0;
+  for (PairContacts::Chunk& chunk : pairs.chunk) {
+    chunk.senders.clear();
+    for (std::uint32_t b = chunk.inner_end; b < chunk.end; ++b, crossing += width) pairs.kind[b].crossing = crossing;
+  }
+  pairs.crossing.assign(crossing, {});
+  std::vector<std::uint32_t> incoming(chunks + 1, 0);
+  for_each_crossing([&](std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t j) { ++incoming[chunk_of(j) + 1]; });
+  for (std::size_t c = 0; c < chunks; ++c) {
+    incoming[c + 1] += incoming[c];
+    pairs.chunk[c].incoming_begin = incoming[c];
+    pairs.chunk[c].incoming_end = incoming[c + 1];
+  }
+  pairs.incoming.resize(incoming[chunks]);
+  for_each_crossing([&](std::uint32_t c, std::uint32_t b, std::uint32_t k, std::uint32_t j) {
+    pairs.incoming[incoming[chunk_of(j)]++] = {j, pairs.kind[b].crossing + k, b};
+    std::vector<std::uint32_t>& senders = pairs.chunk[chunk_of(j)].senders;
+    if (senders.empty() || senders.back() != c) senders.push_back(c);
+  });
 }
 
 }  // namespace dem

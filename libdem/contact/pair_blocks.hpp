@@ -34,4 +34,7 @@ bool fit(const Lanes& lanes, const GrainTable& grains);
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
                                 const Resolution& resolution, bool rolling_spring, bool keep_ledger, PairContacts used = {});
 
+// Fills in, from the pairs in blocks that cross to other chunks, where their second grains find what acts on them.
+void connect_chunks(PairContacts& pairs, std::size_t grains);
+
 }  // namespace dem

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "libdem/contact/forces.hpp"
+#include "libdem/contact/regroup.hpp"
 #include "libdem/errors.hpp"
 #include "libdem/neighbors/reach.hpp"
 #include "libdem/neighbors/spatial_order.hpp"
@@ -398,6 +399,9 @@ struct Simulation::Engine {
     if (lasted > 2000) skin = std::max(0.8 * skin, thinnest_skin());
   }
 
+  // How often blocks are filled anew while lists last: 1 to 2 % of the time of so many steps goes into it. Twice and half as often are as good.
+  std::uint64_t regrouping_steps() const { return std::max<std::uint64_t>(256, stride_of_all()); }
+
   // What evaluate() does to the grains of a chunk that are due, when the contacts' forces on them are there.
   template <bool Levels>
   void finish_chunk(std::size_t d, bool move) {
@@ -609,6 +613,11 @@ struct Simulation::Engine {
         if (!(odometer + travel_until_all_due() < next_look)) {
           watch.add_to(effort.rest);
           renew_lists();
+          watch.add_to(effort.listing);
+        }
+        if ((step - listed_step) % regrouping_steps() == 0 && step > listed_step) {
+          watch.add_to(effort.rest);
+          regroup(pairs, grains.table(), materials, setup.resolution());
           watch.add_to(effort.listing);
         }
       }

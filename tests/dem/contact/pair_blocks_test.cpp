@@ -4,51 +4,14 @@
 
 #include <functional>
 #include <map>
-#include <random>
 #include <set>
+
+#include "tests/dem/pair_scene.hpp"
 
 namespace dem {
 namespace {
 
-struct Scene {
-  LargeArray<GrainRow> rows;
-  std::vector<std::uint8_t> material;
-  std::vector<double> mass, inertia;
-  PairList list;
-  MaterialTable materials;
-  GrainTable table() const { return {rows, material, mass, inertia}; }
-};
-
-// Grains of two materials, enough for several chunks.
-Scene random_scene(std::size_t n, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> draw(0, 1);
-  Scene s;
-  std::vector<Vec3> x;
-  std::vector<double> radius;
-  for (std::size_t i = 0; i < n; ++i) {
-    x.emplace_back(10 * draw(random), 10 * draw(random), 10 * draw(random));
-    radius.push_back(0.4 + 0.2 * draw(random));
-    GrainRow row;
-    row.place = quad(x[i], radius[i]);
-    s.rows.push_back(row);
-    s.material.push_back(draw(random) < 0.7 ? 0 : 1);
-    s.mass.push_back(1 + draw(random));
-    s.inertia.push_back(1 + draw(random));
-  }
-  s.rows.resize(n + chunks_of(n), phantom());
-  s.list = build_pair_list(x, radius, 0.2);
-  s.materials =
-      make_material_table({{"a", 1, 1e9, 0.2}, {"b", 1, 2e9, 0.3}},
-                          {{{0.9, 0.5, 0, 0.1}, {0.8, 0.4, 0, 0.2}}, {{0.8, 0.4, 0, 0.2}, {0.7, 0.3, 0, 0.3}}});
-  return s;
-}
-
-// Half of the pairs touch, on three levels.
-std::optional<std::uint8_t> level(std::uint32_t i, std::uint32_t j) {
-  if ((i + j) % 2 == 0) return std::nullopt;
-  return std::uint8_t(i % 3);
-}
+using support::level, support::random_scene, support::Scene;
 
 TEST(PairBlocks, HoldEveryPairOnceInBlocksOfOneKind) {
   for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{40}, chunk_rows, chunk_rows + 1, 3 * chunk_rows + 50}) {

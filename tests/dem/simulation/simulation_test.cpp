@@ -94,7 +94,7 @@ TEST(Simulation, ListsMissNoContact) {
     setup.walls[0].motion.velocity = Vec3(2, 0, 0);
     Simulation sim(setup, fresh(support::packed_cube(12, 1e-7, 0.0, 7)));
     std::size_t unequal = 0, most = 0;
-    for (int look = 0; look < 25; ++look) {
+    for (int look = 0; look < 30; ++look) {
       sim.advance(240);
       const State::Layout layout = sim.state().layout;
       unequal += *std::min_element(layout.reach.begin(), layout.reach.end()) < 0.5 * layout.skin;
