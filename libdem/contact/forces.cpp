@@ -797,9 +797,10 @@ struct Share {
   std::size_t end;
 };
 
-// Each thread takes the next chunk of its share, evaluates it, and finishes the one that it evaluated before, or later if chunks that send
-// forces to it are still to be evaluated. It waits only when none is left to take: then whoever has one evaluates it, and waits for nothing
-// meanwhile.
+enum class Progress : std::uint8_t { to_evaluate, waiting, taken };  // of a chunk; taken by whoever finishes it
+
+// Each thread takes the next chunk of its share, evaluates it, and finishes the one that it evaluated before, unless chunks that send forces
+// to it are still to be evaluated. When none is left to take, all finish together what has waited, whoever evaluated it.
 template <class Law, bool Keep>
 double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out,
                     const std::function<void(std::size_t)>& finish) {
@@ -807,6 +808,7 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
   for (const std::uint32_t number : in.due_chunks) pairs.chunk[number].pending = 1;
   const std::size_t threads = count >= few_chunks ? std::size_t(omp_get_max_threads()) : 1;
   std::vector<Share> shares(threads);
+  std::vector<std::atomic<Progress>> progress(count);
   std::atomic<std::size_t> finished = 0;
   for (std::size_t t = 0; t < threads; ++t) {
     shares[t].next = count * t / threads;
@@ -815,13 +817,15 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
 #pragma omp parallel num_threads(int(threads))
   {
     const std::size_t me = std::size_t(omp_get_thread_num());
-    std::vector<std::size_t> unfinished;
     const auto ready = [&](std::size_t k) {
       return std::ranges::none_of(pairs.chunk[in.due_chunks[k]].senders, [&](std::uint32_t sender) { return pending(pairs.chunk[sender]); });
     };
-    const auto complete = [&](std::size_t k) {
+    const auto finish_if_ready = [&](std::size_t k) {
+      Progress as = Progress::waiting;
+      if (!ready(k) || !progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire)) return;
       add_crossing(pairs, in.due_chunks[k], in.due, out);
       finish(k);
+      ++finished;
     };
     std::size_t before = count;
     for (std::size_t turn = 0; turn < threads; ++turn) {
@@ -829,18 +833,18 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
       for (std::size_t k = share.next++; k < share.end; k = share.next++) {
         evaluate_chunk<Law, Keep>(law, in, pairs, walls, in.due_chunks[k], out);
         std::atomic_ref(pairs.chunk[in.due_chunks[k]].pending).store(0, std::memory_order_release);
-        if (before < count) ready(before) ? complete(before) : unfinished.push_back(before);
+        progress[k].store(Progress::waiting, std::memory_order_release);
+        if (before < count) finish_if_ready(before);
         before = k;
       }
     }
-    if (before < count) unfinished.push_back(before);
-    for (const std::size_t k : unfinished) {
-      wait_until([&] { return ready(k); });
-      complete(k);
-    }
-    // Here, as at the end of the region OpenMP would soon put the thread to sleep, and waking it takes longer than others need.
-    ++finished;
-    wait_until([&] { return finished == std::size_t(omp_get_num_threads()); });
+    // Awake until all is done, as at the end of the region OpenMP would soon put the thread to sleep, and waking it takes longer than others
+    // need.
+    wait_until([&] {
+      for (std::size_t k = 0; k < count; ++k)
+        if (progress[k].load(std::memory_order_relaxed) == Progress::waiting) finish_if_ready(k);
+      return finished == count;
+    });
   }
   double largest_overlap = 0;
   for (const std::uint32_t number : in.due_chunks) {

@@ -402,41 +402,60 @@ struct Simulation::Engine {
   // How often blocks are filled anew while lists last: 1 to 2 % of the time of so many steps goes into it. Twice and half as often are as good.
   std::uint64_t regrouping_steps() const { return std::max<std::uint64_t>(256, stride_of_all()); }
 
+  // What a pass over the grains needs of a run. By value, as the compiler would read members anew after whatever it writes.
+  struct Columns {
+    GrainRow* rows;
+    ForceRow* forces;
+    Vec4* spun;
+    const double *mass, *kick, *turn;
+    std::uint8_t *level, *asked;
+    double step, local_damping;
+    std::uint8_t highest;
+  };
+  Columns columns() {
+    return {grains.rows.data(),  grains.forces.data(), grains.spun.data(), grains.mass.data(),  kick.data(), turn.data(),
+            grains.level.data(), grains.asked.data(),  setup.step,         setup.local_damping, setup.levels};
+  }
+
   // What evaluate() does to the grains of a chunk that are due, when the contacts' forces on them are there.
   template <bool Levels>
   void finish_chunk(std::size_t d, bool move) {
     const std::uint32_t c = due_chunks[d];
+    const Columns on = columns();
     const Vec4 gravity = quad(setup.gravity, 0);
+    const std::uint8_t now_due = due;
+    const double watched = least_watched;
+    const std::size_t end = std::min((c + 1) * chunk_rows, size());
     Motion motion;
-    Pressed& now = pressed[c];
-    now.largest = 0;
-    now.above.clear();
-    std::uint8_t finest = setup.levels;
-    double gravity_shift = 0;
-    for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i) {
-      Vec4 weight = grains.mass[i] * gravity;
+    pressed[c].above.clear();
+    std::uint8_t finest = on.highest;
+    double gravity_shift = 0, largest = 0;
+    for (std::size_t i = c * chunk_rows; i < end; ++i) {
+      Vec4 weight = on.mass[i] * gravity;
       if constexpr (Levels) {
-        std::uint8_t& level = grains.level[i];
-        if (level > due) {
-          finest = std::min(finest, level);
+        const std::uint8_t before = on.level[i];
+        if (before > now_due) {
+          finest = std::min(finest, before);
           continue;
         }
-        const std::uint8_t before = level;
-        level = std::min(grains.asked[i], due);
+        const std::uint8_t level = std::min(on.asked[i], now_due);
+        on.level[i] = level;
         finest = std::min(finest, level);
-        gravity_shift += 0.5 * (stride(level) - stride(before)) * weight.dot(grains.rows[i].motion);
+        if (level != before) gravity_shift += 0.5 * (stride(level) - stride(before)) * weight.dot(on.rows[i].motion);
         weight *= stride(level);
       }
-      grains.forces[i].force += weight;
-      const double force = grains.forces[i].force[3];
-      now.largest = std::max(now.largest, force);
-      if (force > least_watched) [[unlikely]] {
-        const GrainRow& grain = grains.rows[i];
-        if (force > watched_force(grain.radius()))
-          now.above.push_back({std::uint32_t(i), grains.id[i], force, 0, grain.velocity().norm(), grain.angular_velocity().norm(), grain.position()});
+      const Vec4 force = on.forces[i].force + weight;
+      on.forces[i].force = force;
+      largest = std::max(largest, force[3]);
+      if (force[3] > watched) [[unlikely]] {
+        const GrainRow& grain = on.rows[i];
+        if (force[3] > watched_force(grain.radius()))
+          pressed[c].above.push_back(
+              {std::uint32_t(i), grains.id[i], force[3], 0, grain.velocity().norm(), grain.angular_velocity().norm(), grain.position()});
       }
-      if (move) kick_and_drift<Levels>(i, motion);
+      if (move) kick_and_drift<Levels>(on, i, motion);
     }
+    pressed[c].largest = largest;
     chunk_level[c] = finest;
     // A grain that changes its level falls for another time than its weight acts.
     pairs.chunk[c].ledger.time_stepping -= setup.step * gravity_shift;
@@ -454,20 +473,21 @@ struct Simulation::Engine {
   }
 
   // The change of a velocity in one step under local damping; the velocity in the middle of the step says which way it goes.
-  Vec4 damped(const Vec4& velocity, const Vec4& change) const {
+  static Vec4 damped(double local_damping, const Vec4& velocity, const Vec4& change) {
     const double speeding_up = change.head<3>().dot((velocity + 0.5 * change).head<3>());
-    const double share = speeding_up > 0 ? 1 - setup.local_damping : 1 + setup.local_damping;
+    const double share = speeding_up > 0 ? 1 - local_damping : 1 + local_damping;
     return share * change;
   }
 
+  // The row of forces is in a cache now, and is not when the next are added to it: it is cleared here.
   template <bool Levels>
-  [[gnu::always_inline]] inline void kick_and_drift(std::size_t i, Motion& motion) {
+  [[gnu::always_inline]] static inline void kick_and_drift(const Columns& on, std::size_t i, Motion& motion) {
     const Vec4 three(1, 1, 1, 0);
-    Vec4 faster = (kick[i] * three).cwiseProduct(grains.forces[i].force), spun = turn[i] * grains.forces[i].torque;
-    GrainRow& grain = grains.rows[i];
-    if (setup.local_damping != 0) {
-      faster = damped(grain.motion, faster);
-      spun = damped(grain.spin, spun);
+    Vec4 faster = (on.kick[i] * three).cwiseProduct(on.forces[i].force), spun = on.turn[i] * on.forces[i].torque;
+    GrainRow& grain = on.rows[i];
+    if (on.local_damping != 0) {
+      faster = damped(on.local_damping, grain.motion, faster);
+      spun = damped(on.local_damping, grain.spin, spun);
     }
     grain.motion += faster;
     grain.spin += spun;
@@ -475,29 +495,30 @@ struct Simulation::Engine {
     motion.speed = motion.speed.cwiseMax(velocity.cwiseAbs());
     grain.arrival = velocity + 0.5 * three.cwiseProduct(faster);
     if constexpr (Levels) {
-      grain.place += setup.step * stride(grains.level[i]) * velocity;
-      grain.arrival[3] = per_stride(grains.level[i]);
-      grains.spun[i] = 0.5 * spun;
-      motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(setup.levels - grains.level[i])) * faster.cwiseAbs());
+      const std::uint8_t level = on.level[i];
+      grain.place += on.step * stride(level) * velocity;
+      grain.arrival[3] = per_stride(level);
+      on.spun[i] = 0.5 * spun;
+      motion.jolt = motion.jolt.cwiseMax(stride(std::uint8_t(on.highest - level)) * faster.cwiseAbs());
     } else {
-      grain.place += setup.step * velocity;
+      grain.place += on.step * velocity;
     }
-    expect_forces(i);
+    expect_forces(on, i);
   }
 
-  // The row of forces is in a cache now, and is not when the next are added to it.
-  void expect_forces(std::size_t i) {
-    grains.forces[i] = ForceRow{};
-    grains.asked[i] = ForceOutput::nothing_asked;
+  static void expect_forces(const Columns& on, std::size_t i) {
+    on.forces[i] = ForceRow{};
+    on.asked[i] = ForceOutput::nothing_asked;
   }
 
   // Condition: all are due.
   void move_all() {
 #pragma omp parallel for schedule(static) if (due_chunks.size() >= few_chunks)
     for (std::size_t c = 0; c < due_chunks.size(); ++c) {
+      const Columns on = columns();
       Motion motion;
       for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i)
-        setup.levels == 0 ? kick_and_drift<false>(i, motion) : kick_and_drift<true>(i, motion);
+        setup.levels == 0 ? kick_and_drift<false>(on, i, motion) : kick_and_drift<true>(on, i, motion);
       remember(motion, c);
     }
   }
@@ -652,7 +673,7 @@ struct Simulation::Engine {
     due = setup.levels;
     due_chunks.resize(chunk_level.size());
     std::iota(due_chunks.begin(), due_chunks.end(), 0U);
-    for (std::size_t i = 0; i < size(); ++i) expect_forces(i);
+    for (std::size_t i = 0; i < size(); ++i) expect_forces(columns(), i);
     evaluate_with(true, true, [](std::size_t) {});  // so that the last frame shows the forces
     stop_for_overlap(guarded());
   }
