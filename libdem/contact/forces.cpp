@@ -581,11 +581,16 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   const auto spin = load_quads([&](std::size_t k) { return grain(k).spin.data(); });
   Touch<Pack> touch;
   const auto arrival = load_quads([&](std::size_t k) { return grain(k).arrival.data(); });
-  const auto spun = load_quads([&](std::size_t k) { return in.spun[slot[k].candidate->particle].data(); });
-  const Pack behind = late(gather([&](std::size_t k) { return slot[k].waited; }), arrival[3]);
   const LaneMotion motion{{v_x, v_y, v_z}, {spin[0], spin[1], spin[2]}, all_lanes(pose.angular_velocity)};
-  const Triple<Pack> changed = Triple<Pack>{arrival[0] - v_x, arrival[1] - v_y, arrival[2] - v_z} * behind;
-  touch.spin_i = motion.spin_i - Triple<Pack>{spun[0], spun[1], spun[2]} * behind;
+  Triple<Pack> centre = motion.centres, arriving{arrival[0], arrival[1], arrival[2]};
+  touch.spin_i = motion.spin_i;
+  if (const Pack behind = late(gather([&](std::size_t k) { return slot[k].waited; }), arrival[3]); any_of(behind > Pack(0.0))) {
+    const auto spun = load_quads([&](std::size_t k) { return in.spun[slot[k].candidate->particle].data(); });
+    const Triple<Pack> changed = Triple<Pack>{arrival[0] - v_x, arrival[1] - v_y, arrival[2] - v_z} * behind;
+    touch.spin_i = subtract_product(touch.spin_i, Triple<Pack>{spun[0], spun[1], spun[2]}, behind);
+    centre = centre - changed;
+    arriving = subtract_product(arriving, changed, Pack(2.0));
+  }
   touch.spin_j = all_lanes(pose.angular_velocity);
   touch.arm_i = radius;
   touch.arm_j = 0.0;
@@ -594,8 +599,8 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   const Triple<Pack> arm = touch.normal * radius;
   const Triple<Pack> lever = Triple<Pack>{x, y, z} + arm - all_lanes(pose.position);
   const Triple<Pack> wall_velocity = all_lanes(pose.velocity) + cross(touch.spin_j, lever);
-  touch.velocity = motion.centres - changed + cross(touch.spin_i, arm) - wall_velocity;
-  touch.closing = dot(Triple<Pack>{arrival[0], arrival[1], arrival[2]} - changed * Pack(2.0) - wall_velocity, touch.normal);
+  touch.velocity = centre + cross(touch.spin_i, arm) - wall_velocity;
+  touch.closing = dot(arriving - wall_velocity, touch.normal);
 
   Springs<Pack> springs{gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->memory.spring; }),
                         gather_triple([&](std::size_t k) -> const Vec3& { return slot[k].contact->rolling; }),
@@ -606,9 +611,14 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
                                         Interval<Pack>(gather([&](std::size_t k) { return slot[k].advance; })));
   const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
   const Pack pushed = f.normal.elastic + f.damping;
-  const Triple<Pack> force = tangential - touch.normal * pushed;
+  const Triple<Pack> force = subtract_product(tangential, touch.normal, pushed);
   const Triple<Pack> torque = cross(arm, tangential) + f.rolling.on_i;
   const Triple<Pack> torque_on_wall = f.rolling.on_j - cross(lever, force);
+  const Pack acts = only(hold, gather([&](std::size_t k) { return k < count ? 1.0 : 0.0; }));
+  const Pack weight = acts * gather([&](std::size_t k) { return slot[k].steps; });
+  for_each_row({force.x * weight, force.y * weight, force.z * weight, larger(pushed, Pack(0.0)) * acts, torque.x * weight, torque.y * weight,
+                torque.z * weight, Pack(0.0)},
+               [&](std::size_t k, const auto& row) { add_row(out.forces[slot[k].candidate->particle], row); });
   if constexpr (Keep)
     book(law, touch, c, f, hold, touched, motion, true, wall_velocity,
          gather([&](std::size_t k) { return slot[k].steps * in.step_length; }), count,
@@ -631,11 +641,7 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
     contact.damping = f.damping[k];
     contact.sliding = f.tangential.sliding[k];
     const double steps = slot[k].steps;
-    const Vec3 on_grain = lane_of(force, k);
-    ForceRow& row = out.forces[slot[k].candidate->particle];
-    row.force += quad(steps * on_grain, std::max(double(pushed[k]), 0.0));
-    row.torque += quad(steps * lane_of(torque, k), 0);
-    const WallLoad load{-on_grain, lane_of(torque_on_wall, k)};
+    const WallLoad load{-lane_of(force, k), lane_of(torque_on_wall, k)};
     const WallLoad share{steps * load.force, steps * load.torque};
     chunk.load += load;
     chunk.share += share;
@@ -674,6 +680,16 @@ Demand demand_of(const WallContacts& walls, const WallCandidate& candidate, cons
   return demand;
 }
 
+// What a grain near a wall will load: candidates stand in a row, but not what they refer to.
+inline void prefetch(const ForceInput& in, const WallContacts& walls, const WallCandidate& candidate, const ForceOutput& out) {
+  const char* const contact = reinterpret_cast<const char*>(&walls.contact[candidate.contact_begin]);
+  for (std::size_t byte = 0; byte < sizeof(WallContact); byte += 64) __builtin_prefetch(contact + byte, 1);
+  const GrainRow& row = in.grains[candidate.particle];
+  __builtin_prefetch(&row);
+  __builtin_prefetch(&row.spin);
+  __builtin_prefetch(&out.forces[candidate.particle], 1);
+}
+
 template <class Law, bool Keep>
 void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& walls, WallContacts::Chunk& chunk,
                          const ForceOutput& out) {
@@ -700,6 +716,8 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
     } else if (activity.level > in.due) {
       continue;
     }
+    if (q + 2 < chunk.end && walls.activity[q + 2].acts && walls.activity[q + 2].level <= in.due)
+      prefetch(in, walls, walls.candidate[q + 2], out);
     WallCandidate& candidate = walls.candidate[q];
     const GrainRow& grain = in.grains[candidate.particle];
     // Where nothing is near, look as far as the list does, to know for how long.
