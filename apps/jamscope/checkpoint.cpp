@@ -199,6 +199,7 @@ void write_state(jam::h5::File& f, const dem::State& s) {
       f.make_group("/state/layout/levels");
       f.set_attribute("/state/layout/levels", "foresight", layout.foresight);
       write_arrays(f, "/state/layout/levels/", layout, level_arrays);
+      f.write("/state/layout/levels/block_quiet", layout.block_quiet, "1", "steps for which no contact forms in a block that is apart and awake");
     }
   }
   const dem::State::Ledger& l = s.ledger;
@@ -238,6 +239,9 @@ dem::State read_state(const jam::h5::File& f) {
     if (f.exists("/state/layout/levels")) {
       layout.foresight = f.attribute<double>("/state/layout/levels", "foresight");
       read_arrays(f, "/state/layout/levels/", layout, level_arrays);
+      // Files of before have none: then each is looked at.
+      const char* const quiet = "/state/layout/levels/block_quiet";
+      layout.block_quiet = f.exists(quiet) ? f.read<std::uint32_t>(quiet) : std::vector<std::uint32_t>(layout.block_level.size(), 0);
     }
   }
   if (!f.exists("/state/ledger")) return s;

@@ -37,6 +37,8 @@ struct Activity {
   bool acts = false;  // there is a contact
   bool asleep = true;
   std::uint8_t level = 0;
+  // Of one that does not act and is awake: steps after all levels were due last before which no contact forms, as was seen; until they are again.
+  std::uint32_t quiet_until = 0;
   double wake = -std::numeric_limits<double>::infinity();
 };
 

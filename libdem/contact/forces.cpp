@@ -156,6 +156,8 @@ void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c
 bool levels_in_use(const ForceInput& in) { return in.highest > 0; }
 bool all_due(const ForceInput& in) { return in.due == in.highest; }
 
+std::uint32_t steps_since_all_due(const ForceInput& in) { return std::uint32_t(in.step & ((std::uint64_t{1} << in.highest) - 1)); }
+
 // s, by how much springs advance in a contact of this level.
 double advance_of(const ForceInput& in, std::uint8_t level) { return in.look ? 0 : in.step_length * stride(level); }
 
@@ -221,13 +223,14 @@ inline std::uint8_t finest_of(const ForceInput& in, const Pack& per_stride) {
 struct Approach {
   double gap;     // m, the smallest that a lane still has to close before a contact forms; < 0 where one forms now
   bool soon;      // may a lane form a contact until all levels are due again?
+  double earliest;  // s, from now, at which one may form at the earliest; of use if `soon`
   Demand demand;  // nothing unless levels are in use; likewise:
   std::uint8_t finest;  // level of the finest grain
 };
 template <class Law>
 JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number, bool crosses) {
   const Block& block = pairs.block[number];
-  Approach approach{std::numeric_limits<double>::infinity(), false, {}, in.highest};
+  Approach approach{std::numeric_limits<double>::infinity(), false, std::numeric_limits<double>::infinity(), {}, in.highest};
   const double jolt = levels_in_use(in) ? jolt_of(in, block, crosses) : 0;
   for (std::size_t lane = 0; lane < PairContacts::width; lane += pack_width) {
     const auto i = [&](std::size_t k) -> const GrainRow& { return in.grains[block.first[lane + k]]; };
@@ -248,7 +251,9 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
     approach.finest = std::min(approach.finest, finest_of(in, larger(arrival_i[3], arrival_j[3])));
     const Triple<Pack> apart{motion_j[0] - motion_i[0], motion_j[1] - motion_i[1], motion_j[2] - motion_i[2]};
     const Pack speed = absolute(dot(apart, branch) / distance);
-    approach.soon |= any_of(gap < (speed + Pack(jolt)) * Pack(longest_stride(in)));
+    const Pack nearing = speed + Pack(jolt);
+    approach.soon |= any_of(gap < nearing * Pack(longest_stride(in)));
+    approach.earliest = std::min(approach.earliest, double(std::experimental::hmin(gap / nearing)));
     add_demand(in, pairs.kind[number].scale, jolt, gap, Pack(0.0), speed, approach.demand);
   }
   return approach;
@@ -429,6 +434,9 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
         activity.level = in.highest;
       } else if (activity.level > in.due) {
         continue;
+      } else if (!all_due(in) && steps_since_all_due(in) < activity.quiet_until) {
+        ask(pairs.block[b], activity.level, crosses, out);
+        continue;
       }
       const Approach approach = look_at(law, in, pairs, b, crosses);
       activity.asleep = approach.gap > 0 && !approach.soon;
@@ -436,6 +444,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
         activity.wake = in.odometer + cautious * approach.gap;
         if (!activity.asleep && levels_in_use(in)) {
           choose_level(in, approach.finest, pairs.kind[b].scale, activity, approach.demand);
+          activity.quiet_until = std::uint32_t(std::min(steps_since_all_due(in) + cautious * approach.earliest / in.step_length, stride(in.highest)));
           ask(pairs.block[b], activity.level, crosses, out);
         }
         continue;
@@ -446,6 +455,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
     if (b + 1 < chunk.end && pairs.activity[b + 1].acts && pairs.activity[b + 1].level <= in.due) prefetch(in, pairs.block[b + 1], out);
     evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk);
     activity.wake = in.odometer;
+    activity.quiet_until = 0;
     evaluations += {1, std::uint64_t{1} << activity.level, 0, 0};
   }
   chunk.largest_overlap = std::experimental::hmax(largest_overlap);

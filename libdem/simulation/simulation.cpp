@@ -359,7 +359,7 @@ struct Simulation::Engine {
     const auto known = [&](std::uint8_t level) { return level == State::Layout::asleep_level || level <= most_levels; };
     const std::size_t blocks = pairs.block.size(), candidates = layout.wall_grain.size();
     if (layout.grain_level.size() != size() || layout.block_level.size() != blocks || layout.block_wake.size() != blocks ||
-        layout.wall.size() != candidates || layout.wall_level.size() != candidates || layout.wall_wake.size() != candidates ||
+        layout.block_quiet.size() != blocks || layout.wall.size() != candidates || layout.wall_level.size() != candidates || layout.wall_wake.size() != candidates ||
         layout.closing_jolt.size() != chunks_of(size()) ||
         !std::all_of(layout.block_level.begin(), layout.block_level.end(), known) ||
         !std::all_of(layout.wall_level.begin(), layout.wall_level.end(), known) ||
@@ -371,7 +371,10 @@ struct Simulation::Engine {
       activity.wake = wake;
     };
     for (std::size_t r = 0; r < size(); ++r) grains.level[r] = std::min(layout.grain_level[r], setup.levels);
-    for (std::size_t b = 0; b < blocks; ++b) restore(pairs.activity[b], layout.block_level[b], layout.block_wake[b]);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      restore(pairs.activity[b], layout.block_level[b], layout.block_wake[b]);
+      pairs.activity[b].quiet_until = layout.block_quiet[b];
+    }
     std::map<std::pair<std::uint32_t, std::uint32_t>, Activity*> candidate;
     for (std::size_t q = 0; q < walls.candidate.size(); ++q)
       candidate[{walls.candidate[q].particle, walls.candidate[q].wall}] = &walls.activity[q];
@@ -780,6 +783,7 @@ State Simulation::state() const {
     for (const Activity& activity : e.pairs.activity) {
       state.layout.block_level.push_back(level_of(activity));
       state.layout.block_wake.push_back(activity.wake);
+      state.layout.block_quiet.push_back(activity.quiet_until);
     }
     for (std::size_t q = 0; q < e.walls.candidate.size(); ++q) {
       state.layout.wall_grain.push_back(e.walls.candidate[q].particle);

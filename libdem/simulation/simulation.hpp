@@ -95,6 +95,7 @@ struct State {
     std::vector<std::uint8_t> grain_level;  // [N] rows of the run
     std::vector<std::uint8_t> block_level;  // [lanes / 8]
     std::vector<double> block_wake;         // [lanes / 8] m
+    std::vector<std::uint32_t> block_quiet;  // [lanes / 8] steps (Activity::quiet_until)
     std::vector<std::uint32_t> wall_grain, wall;  // [C] row of the run, wall
     std::vector<std::uint8_t> wall_level;   // [C]
     std::vector<double> wall_wake;          // [C] m

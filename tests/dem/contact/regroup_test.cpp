@@ -22,7 +22,9 @@ PairContacts rattled(const support::Scene& s, double touching, std::uint64_t see
   PairContacts pairs = make_pair_contacts(order_lanes(s.list, s.table(), 2, support::level), s.table(), s.materials, resolution, true, true);
   for (std::size_t b = 0; b < pairs.block.size(); ++b) {
     Activity& activity = pairs.activity[b];
-    activity = {false, draw(random) < 0.5, std::uint8_t(4 * draw(random)), draw(random)};
+    activity.asleep = draw(random) < 0.5;
+    activity.level = std::uint8_t(4 * draw(random));
+    activity.wake = draw(random);
     for (std::size_t k = 0; k < width; ++k) {
       if (pairs.block[b].second[k] >= s.table().size() || draw(random) > touching) continue;
       activity.acts = true;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <set>
 
 #include "libdem/contact/levels.hpp"
@@ -255,10 +256,20 @@ TEST(Levels, AnyNumberOfThreadsAndAnyRestartGiveTheSameBytes) {
   expect_same(ends[0], ends[1]);
   expect_same(ends[0], ends[2]);
   Simulation part(setup, fresh(support::grains_below_the_paddle()));
+  std::ptrdiff_t quiet = 0;
   for (const std::uint64_t steps : {16, 160, 2000, 1024, 16, 3200, 1584}) {
     part.advance(steps);
+    const State::Layout before = part.state().layout;
     part = Simulation(setup, part.state());
+    const State::Layout after = part.state().layout;
+    EXPECT_EQ(before.first, after.first);
+    EXPECT_EQ(before.second, after.second);
+    EXPECT_EQ(before.block_level, after.block_level);
+    EXPECT_EQ(before.block_wake, after.block_wake);
+    EXPECT_EQ(before.block_quiet, after.block_quiet);
+    quiet += std::count_if(after.block_quiet.begin(), after.block_quiet.end(), [](std::uint32_t until) { return until > 0; });
   }
+  EXPECT_GT(quiet, 10);
   expect_same(part.state(), ends[0]);
 }
 
