@@ -72,15 +72,15 @@ LevelScale scale_of(const PairContacts& pairs, std::size_t number, const Materia
 struct Space {
   Contents old;
   std::array<std::vector<std::uint32_t>, most_levels + 1> touching;  // lanes of the range
-  std::vector<std::pair<double, std::uint32_t>> near;  // m, gaps of lanes that stood among contacts or awake
-  std::vector<std::uint32_t> apart, all_apart, phantoms, order;
+  std::vector<std::pair<double, std::uint32_t>> near;  // m, gaps of pairs that are apart and stood among contacts or awake
+  std::vector<std::uint32_t> asleep, apart, phantoms, order;
 };
 
 // The lanes of a range in the order that they should have, or nothing where little would be gained.
 bool find_order(const PairContacts& pairs, const Range& range, const GrainTable& grains, Space& space) {
   for (auto& lanes : space.touching) lanes.clear();
   space.near.clear();
-  space.apart.clear();
+  space.asleep.clear();
   space.phantoms.clear();
   std::size_t acting = 0;
   for (std::uint32_t b = range.begin; b < range.end; ++b) {
@@ -94,14 +94,14 @@ bool find_order(const PairContacts& pairs, const Range& range, const GrainTable&
       else if (block.second[k] >= grains.size())
         space.phantoms.push_back(lane);
       else if (activity.asleep && !activity.acts)
-        space.apart.push_back(lane);
+        space.asleep.push_back(lane);
       else
         space.near.emplace_back(0, lane);
     }
   }
   std::size_t needed = 0;
   for (const auto& lanes : space.touching) needed += (lanes.size() + width - 1) / width;
-  if (8 * acting <= 9 * needed) return false;
+  if (8 * acting <= 9 * needed) return false;  // little to gain
 
   for (auto& [gap, lane] : space.near) {
     const PairContacts::Block& block = pairs.block[range.begin + lane / width];
@@ -109,20 +109,19 @@ bool find_order(const PairContacts& pairs, const Range& range, const GrainTable&
     gap = (i.position() - j.position()).norm() - i.radius() - j.radius();
   }
   std::sort(space.near.begin(), space.near.end());
-  std::vector<std::uint32_t>& all_apart = space.all_apart;
-  all_apart.clear();
-  for (const auto& [gap, lane] : space.near) all_apart.push_back(lane);
-  all_apart.insert(all_apart.end(), space.apart.begin(), space.apart.end());
+  space.apart.clear();
+  for (const auto& [gap, lane] : space.near) space.apart.push_back(lane);
+  space.apart.insert(space.apart.end(), space.asleep.begin(), space.asleep.end());
 
   // Blocks of contacts are filled up with pairs that are apart; each other block begins with one.
   auto phantom = space.phantoms.begin();
-  auto apart = all_apart.begin();
+  auto apart = space.apart.begin();
   space.order.clear();
   for (const auto& lanes : space.touching) {
     space.order.insert(space.order.end(), lanes.begin(), lanes.end());
-    while (space.order.size() % width != 0) space.order.push_back(apart != all_apart.end() ? *apart++ : *phantom++);
+    while (space.order.size() % width != 0) space.order.push_back(apart != space.apart.end() ? *apart++ : *phantom++);
   }
-  const std::size_t blocks = range.blocks() - space.order.size() / width, pairs_left = std::size_t(all_apart.end() - apart);
+  const std::size_t blocks = range.blocks() - space.order.size() / width, pairs_left = std::size_t(space.apart.end() - apart);
   if (pairs_left < blocks) return false;
   std::size_t spare = pairs_left - blocks;  // beyond one for each block
   for (std::size_t b = 0; b < blocks; ++b) {
