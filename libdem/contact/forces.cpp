@@ -624,10 +624,11 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   const Triple<Pack> force = subtract_product(tangential, touch.normal, pushed);
   const Triple<Pack> torque = cross(arm, tangential) + f.rolling.on_i;
   const Triple<Pack> torque_on_wall = f.rolling.on_j - cross(lever, force);
-  const Pack acts = only(hold, gather([&](std::size_t k) { return k < count ? 1.0 : 0.0; }));
-  const Pack weight = acts * gather([&](std::size_t k) { return slot[k].steps; });
-  for_each_row({force.x * weight, force.y * weight, force.z * weight, larger(pushed, Pack(0.0)) * acts, torque.x * weight, torque.y * weight,
-                torque.z * weight, Pack(0.0)},
+  const Mask<Pack> acts = hold && gather([](std::size_t k) { return double(k); }) < Pack(double(count));
+  const Pack steps = gather([&](std::size_t k) { return slot[k].steps; });
+  const Triple<Pack> impulse = only(acts, force * steps), angular_impulse = only(acts, torque * steps);
+  for_each_row({impulse.x, impulse.y, impulse.z, only(acts, larger(pushed, Pack(0.0))), angular_impulse.x, angular_impulse.y, angular_impulse.z,
+                Pack(0.0)},
                [&](std::size_t k, const auto& row) { add_row(out.forces[slot[k].candidate->particle], row); });
   if constexpr (Keep)
     book(law, touch, c, f, hold, touched, motion, true, wall_velocity,
@@ -650,9 +651,8 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
     contact.elastic = f.normal.elastic[k];
     contact.damping = f.damping[k];
     contact.sliding = f.tangential.sliding[k];
-    const double steps = slot[k].steps;
     const WallLoad load{-lane_of(force, k), lane_of(torque_on_wall, k)};
-    const WallLoad share{steps * load.force, steps * load.torque};
+    const WallLoad share{slot[k].steps * load.force, slot[k].steps * load.torque};
     chunk.load += load;
     chunk.share += share;
     if (const auto* mesh = std::get_if<MeshWall>(&in.walls[chunk.wall].shape)) {

@@ -62,36 +62,33 @@ inline double multiply_add(double a, double b, double c) { return a * b + c; }
 inline float multiply_add(float a, float b, float c) { return a * b + c; }
 inline double subtract_product(double c, double a, double b) { return c - a * b; }
 #endif
-#if defined(__FMA__) && defined(__AVX512F__)
+#if defined(__FMA__)
+#if defined(__AVX512F__)
+using Register = __m512d;
+using SingleRegister = __m256;
+inline Register fused(Register a, Register b, Register c) { return _mm512_fmadd_pd(a, b, c); }
+inline Register fused_negative(Register a, Register b, Register c) { return _mm512_fnmadd_pd(a, b, c); }
+inline SingleRegister fused(SingleRegister a, SingleRegister b, SingleRegister c) { return _mm256_fmadd_ps(a, b, c); }
+#else
+using Register = __m256d;
+using SingleRegister = __m128;
+inline Register fused(Register a, Register b, Register c) { return _mm256_fmadd_pd(a, b, c); }
+inline Register fused_negative(Register a, Register b, Register c) { return _mm256_fnmadd_pd(a, b, c); }
+inline SingleRegister fused(SingleRegister a, SingleRegister b, SingleRegister c) { return _mm_fmadd_ps(a, b, c); }
+#endif
 inline Pack multiply_add(const Pack& a, const Pack& b, const Pack& c) {
-  return Pack(_mm512_fmadd_pd(static_cast<__m512d>(a), static_cast<__m512d>(b), static_cast<__m512d>(c)));
+  return Pack(fused(static_cast<Register>(a), static_cast<Register>(b), static_cast<Register>(c)));
 }
 inline Pack subtract_product(const Pack& c, const Pack& a, const Pack& b) {
-  return Pack(_mm512_fnmadd_pd(static_cast<__m512d>(a), static_cast<__m512d>(b), static_cast<__m512d>(c)));
+  return Pack(fused_negative(static_cast<Register>(a), static_cast<Register>(b), static_cast<Register>(c)));
 }
 inline SinglePack multiply_add(const SinglePack& a, const SinglePack& b, const SinglePack& c) {
-  return SinglePack(_mm256_fmadd_ps(static_cast<__m256>(a), static_cast<__m256>(b), static_cast<__m256>(c)));
-}
-#elif defined(__FMA__)
-inline Pack multiply_add(const Pack& a, const Pack& b, const Pack& c) {
-  return Pack(_mm256_fmadd_pd(static_cast<__m256d>(a), static_cast<__m256d>(b), static_cast<__m256d>(c)));
-}
-inline Pack subtract_product(const Pack& c, const Pack& a, const Pack& b) {
-  return Pack(_mm256_fnmadd_pd(static_cast<__m256d>(a), static_cast<__m256d>(b), static_cast<__m256d>(c)));
-}
-inline SinglePack multiply_add(const SinglePack& a, const SinglePack& b, const SinglePack& c) {
-  return SinglePack(_mm_fmadd_ps(static_cast<__m128>(a), static_cast<__m128>(b), static_cast<__m128>(c)));
+  return SinglePack(fused(static_cast<SingleRegister>(a), static_cast<SingleRegister>(b), static_cast<SingleRegister>(c)));
 }
 #else
-inline Pack multiply_add(const Pack& a, const Pack& b, const Pack& c) {
-  return Pack([&](auto k) { return multiply_add(double(a[k]), double(b[k]), double(c[k])); });
-}
-inline Pack subtract_product(const Pack& c, const Pack& a, const Pack& b) {
-  return Pack([&](auto k) { return subtract_product(double(c[k]), double(a[k]), double(b[k])); });
-}
-inline SinglePack multiply_add(const SinglePack& a, const SinglePack& b, const SinglePack& c) {
-  return SinglePack([&](auto k) { return multiply_add(float(a[k]), float(b[k]), float(c[k])); });
-}
+inline Pack multiply_add(const Pack& a, const Pack& b, const Pack& c) { return a * b + c; }
+inline Pack subtract_product(const Pack& c, const Pack& a, const Pack& b) { return c - a * b; }
+inline SinglePack multiply_add(const SinglePack& a, const SinglePack& b, const SinglePack& c) { return a * b + c; }
 #endif
 
 // Three components of a number type. Eigen's matrices expect comparisons to give one bool, which a pack cannot.
