@@ -88,6 +88,7 @@ struct PairContacts {
     std::vector<PairForce> recorded;  // by lane, of the last evaluation that recorded
   };
   std::vector<Chunk> chunk;
+  std::vector<ForceSheet> sheets;  // working space, one a thread; zero between evaluations
 
   std::size_t lanes() const { return width * block.size(); }
   std::uint32_t first(std::size_t lane) const { return block[lane / width].first[lane % width]; }
@@ -119,7 +120,9 @@ struct WallCandidate {
   std::uint32_t contact_begin = 0;
   std::uint16_t size = 0, room = 0;
   LevelScale scale;
-  PairConstants<double> constants;
+  double last_overlap = 0;          // m (<= 0), below which no contact holds, however the wall is curved
+  std::uint32_t material_pair = 0;  // index into MaterialTable::pair
+  std::array<double, constants_per_contact> constant{};  // of the table contact_constants, of a flat wall
 };
 
 struct WallContacts {

@@ -66,6 +66,21 @@ inline void store(const Triple<Pack>& values, std::array<PairContacts::Column, 3
   store(values.z, columns[2], lane);
 }
 
+// What the contacts of one chunk of grains do to them.
+struct ChunkOutput {
+  ForceSheet& sheet;
+  std::uint32_t begin;  // row of the chunk's first grain
+  std::vector<std::uint8_t>& asked;
+
+  ForceRow& of(std::uint32_t row) const { return sheet[row - begin]; }
+};
+// Where in the sheet rows of grains of the chunk, or of its phantom, are.
+inline std::array<std::uint32_t, PairContacts::width> in_sheet(const std::array<std::uint32_t, PairContacts::width>& rows, std::uint32_t begin) {
+  std::array<std::uint32_t, PairContacts::width> at;
+  for (std::size_t k = 0; k < PairContacts::width; ++k) at[k] = std::min(rows[k] - begin, std::uint32_t(chunk_rows));
+  return at;
+}
+
 // Each constant of a table is get(the member, its number in the table). Members are constants of the compiler, and written out:
 // it sees through a table and unrolls a loop too late to keep packs out of memory.
 template <class Get>
@@ -90,6 +105,7 @@ inline void fill_contacts(PairConstants<Pack>& c, Get get) {
     (fill(std::integral_constant<std::size_t, M>{}), ...);
   }(std::make_index_sequence<constants_per_contact>{});
 }
+// All but those that follow from the radii.
 inline void fill_constants(PairConstants<Pack>& c, const MaterialTable& materials, const PairContacts& pairs, std::size_t number,
                            std::size_t lane) {
   const PairConstants<double>& kind = materials.pair[pairs.kind[number].material_pair];
@@ -206,7 +222,7 @@ void add_demand(const ForceInput& in, const LevelScale& scale, double jolt, cons
 }
 
 // The second grains of blocks that cross to other chunks hear of it in add_crossing().
-void ask(const Block& block, std::uint8_t level, bool crosses, const ForceOutput& out) {
+void ask(const Block& block, std::uint8_t level, bool crosses, const ChunkOutput& out) {
   const auto ask_one = [&](std::uint32_t i) { out.asked[i] = std::min(out.asked[i], level); };
   for (std::size_t k = 0; k < PairContacts::width; ++k) ask_one(block.first[k]);
   if (crosses) return;
@@ -240,6 +256,7 @@ JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const Pa
     const Triple<Pack> branch{place_j[0] - place_i[0], place_j[1] - place_i[1], place_j[2] - place_i[2]};
     PairConstants<Pack> c;
     fill_constants(c, in.materials, pairs, number, lane);
+    set_effective_radius(c, Pack(c.cube_root * c.cube_root * c.cube_root), c.cube_root, Pack(1.0 / c.cube_root));
     const Pack form = with_part<NormalLaws>(law.normal, [&](auto part) -> Pack { return part.form_overlap(c); });
     const Pack distance = square_root(dot(branch, branch)), gap = distance - place_i[3] - place_j[3] + form;
     approach.gap = std::min(approach.gap, double(std::experimental::hmin(gap)));
@@ -286,14 +303,16 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   fill_constants(c, in.materials, pairs, number, lane);
 
   const Triple<Pack> branch{x_j - x_i, y_j - y_i, z_j - z_i};
-  const Pack distance = square_root(dot(branch, branch));
+  const Pack distance = square_root(dot(branch, branch)), curvature = inverse_i + inverse_j;  // 1/R*
+  const Pack per_both = 1.0 / (distance * curvature);  // one quotient for two
+  set_effective_radius(c, Pack(distance * per_both), c.cube_root, Pack(c.cube_root * c.cube_root * curvature));
   Touch<Pack>& touch = r.touch;
   // The contact point divides the branch in the ratio of the radii: R_i/(R_i + R_j) = R*/R_j.
   const Pack share = distance * c.effective_radius;
   touch.arm_i = share * inverse_j;
   touch.arm_j = share * inverse_i;
   touch.overlap = radius_i + radius_j - distance;
-  touch.normal = branch * Pack(1.0 / distance);
+  touch.normal = branch * Pack(curvature * per_both);
   r.motion = {{vx_i - vx_j, vy_i - vy_j, vz_i - vz_j}, {spin_i[0], spin_i[1], spin_i[2]}, {spin_j[0], spin_j[1], spin_j[2]}};
   touch.spin_i = r.motion.spin_i;
   touch.spin_j = r.motion.spin_j;
@@ -319,7 +338,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
 // among them, add nothing. Says whether one has a contact.
 template <class Law, bool Keep>
 inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::size_t lane,
-                           const LaneTouch& lanes, double advance, double steps, bool crosses, const ForceOutput& out,
+                           const LaneTouch& lanes, double advance, double steps, bool crosses, const ChunkOutput& out,
                            Pack& largest_overlap, LedgerSums& sums, PairContacts::Chunk& chunk) {
   Block& block = pairs.block[number];
   const Touch<Pack>& touch = lanes.touch;
@@ -350,14 +369,16 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   const Triple<Pack> torque_i = only(hold, multiply_add(twist, touch.arm_i, f.rolling.on_i) * weight);
   const Triple<Pack> torque_j = only(hold, multiply_add(twist, touch.arm_j, f.rolling.on_j) * weight);
   largest_overlap = larger(largest_overlap, only(hold, touch.overlap * lanes.inverse_smaller_radius));
+  const auto first = in_sheet(block.first, out.begin);
   for_each_row({force.x, force.y, force.z, pressed, torque_i.x, torque_i.y, torque_i.z, zero},
-               [&](std::size_t k, const auto& row) { add_row(out.forces[block.first[lane + k]], row); });
+               [&](std::size_t k, const auto& row) { add_row(out.sheet[first[lane + k]], row); });
   const std::array<Pack, 8> opposite{-force.x, -force.y, -force.z, pressed, torque_j.x, torque_j.y, torque_j.z, zero};
   if (crosses) {
     ForceRow* const to = &pairs.crossing[pairs.kind[number].crossing + lane];
     for_each_row(opposite, [&](std::size_t k, const auto& row) { store_row(to[k], row); });
   } else {
-    for_each_row(opposite, [&](std::size_t k, const auto& row) { add_row(out.forces[block.second[lane + k]], row); });
+    const auto second = in_sheet(block.second, out.begin);
+    for_each_row(opposite, [&](std::size_t k, const auto& row) { add_row(out.sheet[second[lane + k]], row); });
   }
 
   if constexpr (Keep)
@@ -372,12 +393,11 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
 }
 
 // What a block will load that its neighbours in memory do not.
-inline void prefetch(const ForceInput& in, const Block& block, const ForceOutput& out) {
+inline void prefetch(const ForceInput& in, const Block& block) {
   for (std::size_t k = 0; k < PairContacts::width; ++k) {
     const GrainRow& row = in.grains[block.second[k]];
     __builtin_prefetch(&row);
     __builtin_prefetch(&row.spin);
-    __builtin_prefetch(&out.forces[block.second[k]], 1);
   }
 }
 
@@ -385,7 +405,7 @@ inline void prefetch(const ForceInput& in, const Block& block, const ForceOutput
 // not since it was looked at last.
 template <class Law, bool Keep>
 JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, bool woken,
-                                     bool crosses, const ForceOutput& out, Pack& largest_overlap, LedgerSums& sums,
+                                     bool crosses, const ChunkOutput& out, Pack& largest_overlap, LedgerSums& sums,
                                      PairContacts::Chunk& chunk) {
   constexpr std::size_t packs = PairContacts::width / pack_width;
   const Block& block = pairs.block[number];
@@ -418,7 +438,7 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
 }
 
 template <class Law, bool Keep>
-void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, const ForceOutput& out) {
+void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, const ChunkOutput& out) {
   PairContacts::Chunk& chunk = pairs.chunk[number];
   Pack largest_overlap = 0.0;
   LedgerSums sums;
@@ -452,7 +472,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
     } else if (activity.level > in.due) {
       continue;
     }
-    if (b + 1 < chunk.end && pairs.activity[b + 1].acts && pairs.activity[b + 1].level <= in.due) prefetch(in, pairs.block[b + 1], out);
+    if (b + 1 < chunk.end && pairs.activity[b + 1].acts && pairs.activity[b + 1].level <= in.due) prefetch(in, pairs.block[b + 1]);
     evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk);
     activity.wake = in.odometer;
     activity.quiet_until = 0;
@@ -528,16 +548,10 @@ void inherit(WallContacts& walls, WallCandidate& candidate, const std::vector<Wa
 }
 
 PairConstants<double> constants_of(const ForceInput& in, const WallCandidate& candidate, const WallContact& contact) {
-  return in.wall_curvature ? on_curved_wall(candidate.constants, contact.touch.curvature) : candidate.constants;
-}
-
-// m, the overlap below which no contact of the candidate can hold, however its wall is curved.
-template <class Law>
-double last_overlap(const Law& law, const ForceInput& in, const WallCandidate& candidate) {
-  if (!in.wall_curvature) return last_overlap(law, candidate.constants);
-  PairConstants<double> most = candidate.constants;
-  set_adhesion(most, most.effective_radius * conforming);
-  return last_overlap(law, most);
+  PairConstants<double> c = in.materials.pair[candidate.material_pair];
+  for (std::size_t m = 0; m < constants_per_contact; ++m) c.*contact_constants<double>[m] = candidate.constant[m];
+  set_effective_radius(c, in.grains[candidate.particle].radius());
+  return in.wall_curvature ? on_curved_wall(c, contact.touch.curvature) : c;
 }
 
 // What the grain may touch now, of its candidate parts within `reach`: chosen anew when it may have come nearer by a margin, as few of the
@@ -568,27 +582,32 @@ struct WallSlot {
 
 template <class Law, bool Keep>
 JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, const std::array<WallSlot, pack_width>& slot,
-                                          std::size_t count, WallContacts::Chunk& chunk, const ForceOutput& out,
+                                          std::size_t count, WallContacts::Chunk& chunk, const ChunkOutput& out,
                                           LedgerSums& sums) {
   const WallPose& pose = in.poses[chunk.wall];
   const auto grain = [&](std::size_t k) -> const GrainRow& { return in.grains[slot[k].candidate->particle]; };
 
-  std::array<const PairConstants<double>*, pack_width> constants;
-  std::array<PairConstants<double>, pack_width> curved;
-  for (std::size_t k = 0; k < pack_width; ++k) {
-    constants[k] = &slot[k].candidate->constants;
-    if (!in.wall_curvature) continue;
-    curved[k] = constants_of(in, *slot[k].candidate, *slot[k].contact);
-    constants[k] = &curved[k];
-  }
   PairConstants<Pack> c;
-  const auto of_slots = [&](auto member, std::size_t) { return gather([&](std::size_t k) { return constants[k]->*member(); }); };
-  fill_materials(c, of_slots);
-  fill_contacts(c, of_slots);
+  const auto kind = [&](std::size_t k) { return slot[k].candidate->material_pair; };
+  bool one_kind = true;
+  for (std::size_t k = 1; k < pack_width; ++k) one_kind &= kind(k) == kind(0);
+  if (one_kind)
+    fill_materials(c, [&](auto member, std::size_t) { return Pack(in.materials.pair[kind(0)].*member()); });
+  else
+    fill_materials(c, [&](auto member, std::size_t) { return gather([&](std::size_t k) { return in.materials.pair[kind(k)].*member(); }); });
+  fill_contacts(c, [&](auto, std::size_t m) { return gather([&](std::size_t k) { return slot[k].candidate->constant[m]; }); });
 
   const auto [x, y, z, radius] = load_quads([&](std::size_t k) { return grain(k).place.data(); });
   const auto [v_x, v_y, v_z, inverse_radius] = load_quads([&](std::size_t k) { return grain(k).motion.data(); });
   const auto spin = load_quads([&](std::size_t k) { return grain(k).spin.data(); });
+  if (in.wall_curvature) {
+    std::array<PairConstants<double>, pack_width> curved;
+    for (std::size_t k = 0; k < pack_width; ++k) curved[k] = constants_of(in, *slot[k].candidate, *slot[k].contact);
+    const Pack cube_root = gather([&](std::size_t k) { return curved[k].cube_root; });
+    set_effective_radius(c, gather([&](std::size_t k) { return curved[k].effective_radius; }), cube_root, Pack(1.0 / cube_root));
+  } else {
+    set_effective_radius(c, radius, c.cube_root, Pack(c.cube_root * c.cube_root * inverse_radius));
+  }
   Touch<Pack> touch;
   const auto arrival = load_quads([&](std::size_t k) { return grain(k).arrival.data(); });
   const LaneMotion motion{{v_x, v_y, v_z}, {spin[0], spin[1], spin[2]}, all_lanes(pose.angular_velocity)};
@@ -629,7 +648,7 @@ JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, 
   const Triple<Pack> impulse = only(acts, force * steps), angular_impulse = only(acts, torque * steps);
   for_each_row({impulse.x, impulse.y, impulse.z, only(acts, larger(pushed, Pack(0.0))), angular_impulse.x, angular_impulse.y, angular_impulse.z,
                 Pack(0.0)},
-               [&](std::size_t k, const auto& row) { add_row(out.forces[slot[k].candidate->particle], row); });
+               [&](std::size_t k, const auto& row) { add_row(out.of(slot[k].candidate->particle), row); });
   if constexpr (Keep)
     book(law, touch, c, f, hold, touched, motion, true, wall_velocity,
          gather([&](std::size_t k) { return slot[k].steps * in.step_length; }), count,
@@ -672,7 +691,7 @@ double normal_speed(const GrainRow& grain, const WallPose& pose, const WallTouch
   return std::abs((velocity - pose.velocity - pose.angular_velocity.cross(lever)).dot(touch.normal));
 }
 
-void choose_level(const ForceInput& in, const WallCandidate& candidate, Activity& activity, const Demand& demand, const ForceOutput& out) {
+void choose_level(const ForceInput& in, const WallCandidate& candidate, Activity& activity, const Demand& demand, const ChunkOutput& out) {
   const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, in.level[candidate.particle] + levels_above));
   activity.level = next_level(activity.level, in.due, cap, candidate.scale, demand);
   std::uint8_t& asked = out.asked[candidate.particle];
@@ -691,18 +710,17 @@ Demand demand_of(const WallContacts& walls, const WallCandidate& candidate, cons
 }
 
 // What a grain near a wall will load: candidates stand in a row, but not what they refer to.
-inline void prefetch(const ForceInput& in, const WallContacts& walls, const WallCandidate& candidate, const ForceOutput& out) {
+inline void prefetch(const ForceInput& in, const WallContacts& walls, const WallCandidate& candidate) {
   const char* const contact = reinterpret_cast<const char*>(&walls.contact[candidate.contact_begin]);
   for (std::size_t byte = 0; byte < sizeof(WallContact); byte += 64) __builtin_prefetch(contact + byte, 1);
   const GrainRow& row = in.grains[candidate.particle];
   __builtin_prefetch(&row);
   __builtin_prefetch(&row.spin);
-  __builtin_prefetch(&out.forces[candidate.particle], 1);
 }
 
 template <class Law, bool Keep>
 void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& walls, WallContacts::Chunk& chunk,
-                         const ForceOutput& out) {
+                         const ChunkOutput& out) {
   std::vector<WallTouch>& touches = chunk.touches;
   const Wall& wall = in.walls[chunk.wall];
   const WallPose& pose = in.poses[chunk.wall];
@@ -727,11 +745,11 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       continue;
     }
     if (q + 2 < chunk.end && walls.activity[q + 2].acts && walls.activity[q + 2].level <= in.due)
-      prefetch(in, walls, walls.candidate[q + 2], out);
+      prefetch(in, walls, walls.candidate[q + 2]);
     WallCandidate& candidate = walls.candidate[q];
     const GrainRow& grain = in.grains[candidate.particle];
     // Where nothing is near, look as far as the list does, to know for how long.
-    const double reach = grain.radius() - last_overlap(law, in, candidate);
+    const double reach = grain.radius() - candidate.last_overlap;
     const double sight = away ? std::max(grain.radius() + walls.skin, reach) : reach;
     const std::span<const std::uint32_t> parts =
         away ? std::span<const std::uint32_t>(walls.parts).subspan(candidate.part_begin, candidate.part_end - candidate.part_begin)
@@ -789,23 +807,23 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
 // All contacts of one chunk of grains that are due; nobody else adds forces to these grains meanwhile.
 template <class Law, bool Keep>
 void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, std::size_t number,
-                    const ForceOutput& out) {
-  out.forces[in.level.size() + number] = ForceRow{};
+                    const ChunkOutput& out) {
   evaluate_pair_chunk<Law, Keep>(law, in, pairs, number, out);
   for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w)
     evaluate_wall_chunk<Law, Keep>(law, in, walls, walls.chunk[w], out);
 }
 
 // What pairs of other chunks do to the grains of this one.
-void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, const ForceOutput& out) {
+void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, ForceRow* rows, std::vector<std::uint8_t>& asked) {
   for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < pairs.chunk[chunk].incoming_end; ++k) {
     const PairContacts::Incoming& in = pairs.incoming[k];
     const Activity& activity = pairs.activity[in.block];
     if (activity.asleep || activity.level > due) continue;
-    out.asked[in.row] = std::min(out.asked[in.row], activity.level);
+    asked[in.row] = std::min(asked[in.row], activity.level);
     if (!activity.acts) continue;
-    out.forces[in.row].force += pairs.crossing[in.crossing].force;
-    out.forces[in.row].torque += pairs.crossing[in.crossing].torque;
+    ForceRow& to = rows[in.row - chunk * chunk_rows];
+    to.force += pairs.crossing[in.crossing].force;
+    to.torque += pairs.crossing[in.crossing].torque;
   }
 }
 
@@ -827,16 +845,17 @@ struct Share {
 
 enum class Progress : std::uint8_t { to_evaluate, waiting, taken };  // of a chunk; taken by whoever finishes it
 
-// Each thread takes the next chunk of its share, evaluates it, and finishes the one that it evaluated before, unless chunks that send forces
-// to it are still to be evaluated. When none is left to take, all finish together what has waited, whoever evaluated it.
+// Each thread takes the next chunk of its share, evaluates it and finishes it. If chunks that send forces to it are still to be evaluated,
+// its sums are put aside, and when none is left to take, all finish together what has waited, whoever evaluated it.
 template <class Law, bool Keep>
 double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out,
-                    const std::function<void(std::size_t)>& finish) {
+                    const FinishChunk& finish) {
   const std::size_t count = in.due_chunks.size();
   for (const std::uint32_t number : in.due_chunks) pairs.chunk[number].pending = 1;
   const std::size_t threads = count >= few_chunks ? std::size_t(omp_get_max_threads()) : 1;
   std::vector<Share> shares(threads);
   std::vector<std::atomic<Progress>> progress(count);
+  if (pairs.sheets.size() < threads) pairs.sheets.resize(threads);
   std::atomic<std::size_t> finished = 0;
   for (std::size_t t = 0; t < threads; ++t) {
     shares[t].next = count * t / threads;
@@ -848,29 +867,36 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
     const auto ready = [&](std::size_t k) {
       return std::ranges::none_of(pairs.chunk[in.due_chunks[k]].senders, [&](std::uint32_t sender) { return pending(pairs.chunk[sender]); });
     };
-    const auto finish_if_ready = [&](std::size_t k) {
-      Progress as = Progress::waiting;
-      if (!ready(k) || !progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire)) return;
-      add_crossing(pairs, in.due_chunks[k], in.due, out);
-      finish(k);
+    const auto finish_with = [&](std::size_t k, ForceRow* rows) {
+      add_crossing(pairs, in.due_chunks[k], in.due, rows, out.asked);
+      finish(k, rows);
       ++finished;
     };
-    std::size_t before = count;
+    const auto aside = [&](std::size_t k) { return &out.forces[in.due_chunks[k] * chunk_rows]; };
+    ForceSheet& sheet = pairs.sheets[me];
     for (std::size_t turn = 0; turn < threads; ++turn) {
       Share& share = shares[(me + turn) % threads];
       for (std::size_t k = share.next++; k < share.end; k = share.next++) {
-        evaluate_chunk<Law, Keep>(law, in, pairs, walls, in.due_chunks[k], out);
-        std::atomic_ref(pairs.chunk[in.due_chunks[k]].pending).store(0, std::memory_order_release);
-        progress[k].store(Progress::waiting, std::memory_order_release);
-        if (before < count) finish_if_ready(before);
-        before = k;
+        const std::uint32_t number = in.due_chunks[k], begin = std::uint32_t(number * chunk_rows);
+        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, ChunkOutput{sheet, begin, out.asked});
+        std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
+        if (ready(k)) {
+          progress[k].store(Progress::taken, std::memory_order_relaxed);
+          finish_with(k, sheet.data());
+        } else {
+          std::copy_n(sheet.begin(), std::min(chunk_rows, in.level.size() - begin), aside(k));
+          sheet.fill({});
+          progress[k].store(Progress::waiting, std::memory_order_release);
+        }
       }
     }
     // Awake until all is done, as at the end of the region OpenMP would soon put the thread to sleep, and waking it takes longer than others
     // need.
     wait_until([&] {
       for (std::size_t k = 0; k < count; ++k)
-        if (progress[k].load(std::memory_order_relaxed) == Progress::waiting) finish_if_ready(k);
+        if (Progress as = Progress::waiting; progress[k].load(std::memory_order_relaxed) == as && ready(k) &&
+                                             progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire))
+          finish_with(k, aside(k));
       return finished == count;
     });
   }
@@ -891,7 +917,7 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
 
 template <class Law>
 double evaluate_all(const Law& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls,
-                    const ForceOutput& out, const std::function<void(std::size_t)>& finish) {
+                    const ForceOutput& out, const FinishChunk& finish) {
   return keep_ledger ? evaluate_all<Law, true>(law, in, pairs, walls, out, finish)
                      : evaluate_all<Law, false>(law, in, pairs, walls, out, finish);
 }
@@ -899,7 +925,7 @@ double evaluate_all(const Law& law, bool keep_ledger, const ForceInput& in, Pair
 }  // namespace
 
 double evaluate_contacts(const LawChoice& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls,
-                         const ForceOutput& out, const std::function<void(std::size_t)>& finish) {
+                         const ForceOutput& out, const FinishChunk& finish) {
   double overlap = 0;
   const bool compiled = [&]<class... Fixed>(std::type_identity<std::tuple<Fixed...>>) {
     return ((law == choice_of<Fixed>() && (overlap = evaluate_all(Fixed{}, keep_ledger, in, pairs, walls, out, finish), true)) || ...);

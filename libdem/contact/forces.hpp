@@ -28,23 +28,26 @@ struct ForceInput {
 };
 
 struct ForceOutput {
-  LargeArray<ForceRow>& forces;     // and the phantoms'
+  LargeArray<ForceRow>& forces;  // [N] of chunks that wait to be finished
   std::vector<std::uint8_t>& asked;  // [N], the finest level that an evaluated contact asks of the grain; and the phantoms'
   static constexpr std::uint8_t nothing_asked = 255;
 };
 
+// d: row in ForceInput::due_chunks. rows: what acts on the grains of that chunk, in their order; to be left zero.
+using FinishChunk = std::function<void(std::size_t d, ForceRow* rows)>;
+
 // Evaluates all contacts that are due with the law; memory and, where one is kept, the ledger sums of the stores' chunks change.
-// To the rows of grains that are due come the sums over these contacts: they must be zero, and what is asked nothing. Returns the largest overlap over the smaller radius.
+// What is asked of grains that are due must be nothing. Returns the largest overlap over the smaller radius.
 //
-// Calls finish(d) once for each of the due chunks, by its row in ForceInput::due_chunks, when all forces on its grains are there:
-// as soon as that is, while they are still in a cache, from whichever thread. Pairs belong to the chunk of their first grain and
+// Calls finish once for each of the due chunks with the sums over these contacts, when all forces on its grains are there: as soon as that
+// is, while they are still in a cache, from whichever thread. Sums of most chunks are never anywhere else than in the working space of a thread. Pairs belong to the chunk of their first grain and
 // the second comes later, so contacts that are still to be evaluated then do not look at that chunk's grains: finish may move
 // them.
 //
 // Results do not depend on the number of threads. Throws PhysicsError where a sphere touches one wall in more places than
 // WallCandidate::capacity.
 double evaluate_contacts(const LawChoice& law, bool keep_ledger, const ForceInput& in, PairContacts& pairs, WallContacts& walls,
-                         const ForceOutput& out, const std::function<void(std::size_t)>& finish);
+                         const ForceOutput& out, const FinishChunk& finish);
 
 // After the grains that were due have taken their impulses: the other half of the work (ledger.hpp) of what was evaluated last,
 // added to the ledger sums of the pairs' chunks.

@@ -136,6 +136,15 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
   return pairs;
 }
 
+PairConstants<double> constants_of(const PairContacts& pairs, std::size_t lane, const LargeArray<GrainRow>& rows, std::size_t grains,
+                                   const MaterialTable& materials) {
+  const std::size_t b = lane / width, i = pairs.first(lane), j = pairs.second(lane);
+  PairConstants<double> c = materials.pair[pairs.kind[b].material_pair];
+  for (std::size_t m = 0; m < constants_per_contact; ++m) c.*contact_constants<double>[m] = pairs.block[b].constant[m][lane % width];
+  set_effective_radius(c, harmonic(rows[i].radius(), rows[j < grains ? j : i].radius()), c.cube_root, 1 / c.cube_root);
+  return c;
+}
+
 void connect_chunks(PairContacts& pairs, std::size_t grains) {
   const std::size_t chunks = pairs.chunk.size();
   const auto for_each_crossing = [&](auto use) {

@@ -34,6 +34,10 @@ bool fit(const Lanes& lanes, const GrainTable& grains);
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
                                 const Resolution& resolution, bool rolling_spring, bool keep_ledger, PairContacts used = {});
 
+// Of a lane; where the second grain is a phantom, as if it were like the first.
+PairConstants<double> constants_of(const PairContacts& pairs, std::size_t lane, const LargeArray<GrainRow>& rows, std::size_t grains,
+                                   const MaterialTable& materials);
+
 // Fills in, from the pairs in blocks that cross to other chunks, where their second grains find what acts on them.
 void connect_chunks(PairContacts& pairs, std::size_t grains);
 

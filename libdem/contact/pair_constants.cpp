@@ -20,6 +20,7 @@ MaterialTable make_material_table(const std::vector<Material>& materials,
       c.rolling_friction = law.rolling_friction;
       c.rolling_damping = law.rolling_damping;
       c.work_of_adhesion = law.work_of_adhesion;
+      set_adhesion(c);
       table.pair.push_back(c);
     }
   }

@@ -36,21 +36,37 @@ struct BodyConstants {
 };
 inline double harmonic(double a, double b) { return a * b / (a + b); }
 
-// Of a contact of this effective radius, m.
-inline void set_adhesion(PairConstants<double>& c, double effective_radius) {
-  c.effective_radius = effective_radius;
-  c.adhesion_length = adhesion_length(c.work_of_adhesion, c.effective_radius, c.effective_modulus);
+// From the work of adhesion and the modulus what set_effective_radius() needs of them.
+inline void set_adhesion(PairConstants<double>& c) {
+  // Each is rounded once, as the law takes powers of them.
+  const long double strain = (long double)(c.work_of_adhesion) / c.effective_modulus, pi = std::numbers::pi_v<long double>;
+  const long double scale = std::cbrt(4 * pi * pi * (strain * strain));
+  c.adhesion_scale = double(scale);
   // Adhesion that no digit of a force shows is none: overlaps in its lengths would be beyond the numbers that jkr_root() bears.
-  if (c.adhesion_length < 1e-30 * c.effective_radius) c.adhesion_length = 0;
-  c.per_adhesion_length = c.adhesion_length > 0 ? 1 / c.adhesion_length : 0;
-  c.root_adhesion_radius = std::sqrt(std::sqrt(c.adhesion_length * c.effective_radius));
+  if (c.adhesion_scale < 1e-30) c.adhesion_scale = 0;
+  c.per_adhesion_scale = c.adhesion_scale > 0 ? double(1 / scale) : 0;
+  c.root_adhesion_scale = c.adhesion_scale > 0 ? double(std::sqrt(std::sqrt(scale))) : 0;
+}
+
+// All that depends on the effective radius, m, given with its cube root and one over that.
+template <class Real>
+void set_effective_radius(PairConstants<Real>& c, const Real& effective_radius, const Real& cube_root, const Real& per_cube_root) {
+  c.effective_radius = effective_radius;
+  c.cube_root = cube_root;
+  c.adhesion_length = c.adhesion_scale * cube_root;
+  c.per_adhesion_length = c.per_adhesion_scale * per_cube_root;
+  c.root_adhesion_radius = c.root_adhesion_scale * cube_root;
+}
+inline void set_effective_radius(PairConstants<double>& c, double effective_radius) {
+  const double cube_root = double(std::cbrt((long double)(effective_radius)));  // rounded once, likewise
+  set_effective_radius(c, effective_radius, cube_root, 1 / cube_root);
 }
 
 // Two spheres.
 inline PairConstants<double> pair_constants(const PairConstants<double>& materials, const BodyConstants& a,
                                             const BodyConstants& b) {
   PairConstants<double> c = materials;
-  set_adhesion(c, harmonic(a.radius, b.radius));
+  set_effective_radius(c, harmonic(a.radius, b.radius));
   c.root_mass = std::sqrt(harmonic(a.mass, b.mass));
   c.effective_inertia = harmonic(a.inertia, b.inertia);
   return c;
@@ -59,7 +75,7 @@ inline PairConstants<double> pair_constants(const PairConstants<double>& materia
 // A sphere and a wall: flat, and so heavy that it does not move.
 inline PairConstants<double> wall_constants(const PairConstants<double>& materials, const BodyConstants& a) {
   PairConstants<double> c = materials;
-  set_adhesion(c, a.radius);
+  set_effective_radius(c, a.radius);
   c.root_mass = std::sqrt(a.mass);
   c.effective_inertia = a.inertia;
   return c;
@@ -71,13 +87,17 @@ inline PairConstants<double> wall_constants(const PairConstants<double>& materia
 // an overlap is exact to 1e-5). A hollow nearly as narrow as the sphere conforms to it and is no contact at a point: R* stops
 // at `conforming` R.
 inline constexpr double conforming = 10;
+inline PairConstants<double> most_conforming(PairConstants<double> flat) {
+  set_effective_radius(flat, flat.effective_radius * conforming);
+  return flat;
+}
 inline PairConstants<double> on_curved_wall(PairConstants<double> flat, const std::array<double, 2>& curvature) {
   if (curvature[0] == 0 && curvature[1] == 0) return flat;
   const double radius = flat.effective_radius;
   const double a = 1 - radius * curvature[0], b = 1 - radius * curvature[1];
   constexpr double least = 1 / (conforming * conforming);
   const double ratio = 1 / std::sqrt(a > 0 && b > 0 ? std::max(a * b, least) : least);
-  set_adhesion(flat, flat.effective_radius * ratio);
+  set_effective_radius(flat, flat.effective_radius * ratio);
   return flat;
 }
 

@@ -57,12 +57,11 @@ struct Contents {
   }
 };
 
-LevelScale scale_of(const PairContacts& pairs, std::size_t number, const MaterialTable& materials, const Resolution& resolution) {
-  PairConstants<double> c = materials.pair[pairs.kind[number].material_pair];
+LevelScale scale_of(const PairContacts& pairs, std::size_t number, const GrainTable& grains, const MaterialTable& materials,
+                    const Resolution& resolution) {
   LevelScale least;
   for (std::size_t k = 0; k < width; ++k) {
-    for (std::size_t m = 0; m < constants_per_contact; ++m) c.*contact_constants<double>[m] = pairs.block[number].constant[m][k];
-    const LevelScale scale = level_scale(c, resolution);
+    const LevelScale scale = level_scale(constants_of(pairs, width * number + k, grains.rows, grains.size(), materials), resolution);
     least = k == 0 ? scale : LevelScale{std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
   }
   return least;
@@ -131,7 +130,8 @@ bool find_order(const PairContacts& pairs, const Range& range, const GrainTable&
   return true;
 }
 
-void fill(PairContacts& pairs, const Range& range, const MaterialTable& materials, const Resolution& resolution, Space& space) {
+void fill(PairContacts& pairs, const Range& range, const GrainTable& grains, const MaterialTable& materials, const Resolution& resolution,
+          Space& space) {
   space.old.take(pairs, range);
   for (std::uint32_t b = range.begin; b < range.end; ++b) {
     const std::uint32_t* const lanes = &space.order[width * (b - range.begin)];
@@ -148,7 +148,7 @@ void fill(PairContacts& pairs, const Range& range, const MaterialTable& material
       now.wake = std::min(now.wake, before.asleep && !before.acts ? before.wake : -std::numeric_limits<double>::infinity());
     }
     pairs.activity[b] = now;
-    pairs.kind[b].scale = scale_of(pairs, b, materials, resolution);
+    pairs.kind[b].scale = scale_of(pairs, b, grains, materials, resolution);
   }
 }
 
@@ -163,7 +163,7 @@ void regroup(PairContacts& pairs, const GrainTable& grains, const MaterialTable&
     for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
       for_each_range(pairs, pairs.chunk[c], [&](const Range& range) {
         if (!find_order(pairs, range, grains, space)) return;
-        fill(pairs, range, materials, resolution, space);
+        fill(pairs, range, grains, materials, resolution, space);
         crossing_moved |= range.begin >= pairs.chunk[c].inner_end;
       });
   }

@@ -35,24 +35,35 @@ struct PairConstants {
   Real rolling_friction;    // 1
   Real rolling_damping;     // 1, share of critical damping of an elastic rolling resistance
   Real work_of_adhesion;    // J/m^2
-  Real effective_radius;    // m, R*: 1/R* = 1/R_i + 1/R_j
+  Real adhesion_scale;      // m^(2/3), k = (4 pi^2 W^2/E*^2)^(1/3); 0 without adhesion
+  Real per_adhesion_scale;  // m^(-2/3), 1/k; 0 without adhesion
+  Real root_adhesion_scale; // m^(1/6), k^(1/4)
+
+  Real cube_root;           // m^(1/3), R*^(1/3)
   Real effective_inertia;   // kg m^2, 1/(1/I_i + 1/I_j)
   Real root_mass;           // kg^(1/2), sqrt(m*): 1/m* = 1/m_i + 1/m_j
-  Real adhesion_length;     // m, s = a0^2/R* = (4 pi^2 W^2 R*/E*^2)^(1/3); 0 without adhesion
+
+  Real effective_radius;    // m, R*: 1/R* = 1/R_i + 1/R_j
+  Real adhesion_length;     // m, s = a0^2/R* = k R*^(1/3); 0 without adhesion
   Real per_adhesion_length; // 1/m, 1/s; 0 without adhesion
-  Real root_adhesion_radius;  // m^(1/2), sqrt(a0)
+  Real root_adhesion_radius;  // m^(1/2), sqrt(a0) = k^(1/4) R*^(1/3)
 };
 
-// TABLES of the members: those of the two materials, and those that differ from contact to contact of the same materials.
+// TABLES of the members: those of the two materials; those that differ from contact to contact of the same materials, which blocks of
+// contacts keep; and those that follow from both and the radii (set_effective_radius), which is less work than to read them.
 template <class Real>
 inline constexpr std::array material_constants = {
     &PairConstants<Real>::effective_modulus,  &PairConstants<Real>::effective_shear,  &PairConstants<Real>::normal_damping,
     &PairConstants<Real>::tangential_damping, &PairConstants<Real>::friction,         &PairConstants<Real>::rolling_friction,
-    &PairConstants<Real>::rolling_damping,    &PairConstants<Real>::work_of_adhesion};
+    &PairConstants<Real>::rolling_damping,    &PairConstants<Real>::work_of_adhesion, &PairConstants<Real>::adhesion_scale,
+    &PairConstants<Real>::per_adhesion_scale, &PairConstants<Real>::root_adhesion_scale};
 template <class Real>
 inline constexpr std::array contact_constants = {
-    &PairConstants<Real>::effective_radius, &PairConstants<Real>::effective_inertia,   &PairConstants<Real>::root_mass,
-    &PairConstants<Real>::adhesion_length,  &PairConstants<Real>::per_adhesion_length, &PairConstants<Real>::root_adhesion_radius};
+    &PairConstants<Real>::cube_root, &PairConstants<Real>::effective_inertia, &PairConstants<Real>::root_mass};
+template <class Real>
+inline constexpr std::array radius_constants = {
+    &PairConstants<Real>::effective_radius, &PairConstants<Real>::adhesion_length, &PairConstants<Real>::per_adhesion_length,
+    &PairConstants<Real>::root_adhesion_radius};
 inline constexpr std::size_t constants_per_contact = contact_constants<double>.size();
 
 // How long springs advance: s, and 1/s. Of no length: nothing slips further and rolling resistance has no limit from the spin.

@@ -2,6 +2,7 @@
 // in libdem/neighbors), so that grains that touch lie close to each other in memory.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct alignas(64) ForceRow {
 // cross chunks cost more than others.
 inline constexpr std::size_t chunk_rows = 512;
 inline std::size_t chunks_of(std::size_t grains) { return (grains + chunk_rows - 1) / chunk_rows; }
+// What acts on the grains of a chunk, and on its phantom.
+using ForceSheet = std::array<ForceRow, chunk_rows + 1>;
 inline GrainRow phantom() {
   GrainRow row;
   row.place = {1e30, 0, 0, 1};

@@ -174,9 +174,12 @@ WallContacts wall_contacts_of_chunk(const ListInput& in, const GrainStore& grain
       c.room = std::max(c.size, std::uint16_t(std::max<std::size_t>(places, 1)));
       fresh.contact.resize(c.contact_begin + c.room);
       if (setup.keep_ledger) fresh.last.resize(fresh.contact.size());
-      c.constants = wall_constants(in.materials(grains.material[r], setup.walls[w].material),
-                                   {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
-      c.scale = level_scale(c.constants, setup.resolution());
+      c.material_pair = std::uint32_t(grains.material[r] * in.materials.size + setup.walls[w].material);
+      const PairConstants<double> flat =
+          wall_constants(in.materials.pair[c.material_pair], {grains.rows[r].radius(), grains.mass[r], grains.inertia[r]});
+      for (std::size_t m = 0; m < constants_per_contact; ++m) c.constant[m] = flat.*contact_constants<double>[m];
+      c.scale = level_scale(flat, setup.resolution());
+      c.last_overlap = last_overlap(setup.law, setup.wall_curvature ? most_conforming(flat) : flat);
       fresh.candidate.push_back(c);
       fresh.activity.push_back(activity);
     }

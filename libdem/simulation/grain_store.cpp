@@ -23,7 +23,7 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   grains.order = std::move(order);
   const LargeArray<GrainRow> rows_before = std::exchange(grains.rows, LargeArray<GrainRow>(n + chunks_of(n), phantom()));
   const LargeArray<Vec4> spun_before = std::exchange(grains.spun, LargeArray<Vec4>(n + chunks_of(n), Vec4::Zero()));
-  grains.forces.assign(n + chunks_of(n), ForceRow{});
+  grains.forces.assign(n, ForceRow{});
   grains.mass.resize(n);
   grains.inertia.resize(n);
   grains.material.resize(n);

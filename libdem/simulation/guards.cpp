@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "libdem/contact/pair_blocks.hpp"
 #include "libdem/errors.hpp"
 
 namespace dem {
@@ -45,11 +46,9 @@ PairGeometry geometry(const GuardInput& in, std::size_t lane) {
   g.overlap = in.grains[g.i].radius() + in.grains[g.j].radius() - g.distance;
   return g;
 }
+
 PairConstants<double> constants(const GuardInput& in, std::size_t lane) {
-  const std::size_t b = lane / PairContacts::width, k = lane % PairContacts::width;
-  PairConstants<double> c = in.materials.pair[in.pairs.kind[b].material_pair];
-  for (std::size_t m = 0; m < constants_per_contact; ++m) c.*contact_constants<double>[m] = in.pairs.block[b].constant[m][k];
-  return c;
+  return constants_of(in.pairs, lane, in.grains, in.id.size(), in.materials);
 }
 
 // Looks at all contacts of the run: for the few grains that come near a limit.
@@ -73,7 +72,7 @@ void for_each_contact(const GuardInput& in, std::size_t i, F f) {
   for (const WallCandidate& c : in.walls.candidate)
     for (const WallContact& w : in.walls.contacts(c))
       if (c.particle == i && w.acts())
-        tell(c.constants, w.memory.contact_radius, w.touch.normal, w.elastic, in.grains[i].radius() - w.touch.distance, [&] { return "wall '" + in.setup.walls[c.wall].name + "'"; });
+        tell(in.materials.pair[c.material_pair], w.memory.contact_radius, w.touch.normal, w.elastic, in.grains[i].radius() - w.touch.distance, [&] { return "wall '" + in.setup.walls[c.wall].name + "'"; });
 }
 
 // "its largest force, 12 N at an overlap of 1.5 um, is with wall 'blade'"
@@ -150,7 +149,7 @@ std::vector<double> traces(const GuardInput& in) {
   }
   for (const WallCandidate& c : in.walls.candidate)
     for (const WallContact& w : in.walls.contacts(c))
-      if (w.acts()) add(c.particle, c.constants, w.memory.contact_radius);
+      if (w.acts()) add(c.particle, in.materials.pair[c.material_pair], w.memory.contact_radius);
   return trace;
 }
 

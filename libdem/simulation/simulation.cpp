@@ -222,7 +222,9 @@ struct Simulation::Engine {
 
   // Forces on every grain that is due; gives it its level and, if asked to, moves it.
   void evaluate(bool look, bool record, bool move) {
-    const auto finish = [&](std::size_t d) { setup.levels == 0 ? finish_chunk<false>(d, move) : finish_chunk<true>(d, move); };
+    const auto finish = [&](std::size_t d, ForceRow* rows) {
+      setup.levels == 0 ? finish_chunk<false>(d, rows, move) : finish_chunk<true>(d, rows, move);
+    };
     window.largest_overlap = std::max(window.largest_overlap, evaluate_with(look, record, finish));
     for (const std::uint32_t c : due_chunks) {
       window.largest_compressive_force = std::max(window.largest_compressive_force, pressed[c].largest);
@@ -408,7 +410,6 @@ struct Simulation::Engine {
   // What a pass over the grains needs of a run. By value, as the compiler would read members anew after whatever it writes.
   struct Columns {
     GrainRow* rows;
-    ForceRow* forces;
     Vec4* spun;
     const double *mass, *kick, *turn;
     std::uint8_t *level, *asked;
@@ -416,24 +417,24 @@ struct Simulation::Engine {
     std::uint8_t highest;
   };
   Columns columns() {
-    return {grains.rows.data(),  grains.forces.data(), grains.spun.data(), grains.mass.data(),  kick.data(), turn.data(),
-            grains.level.data(), grains.asked.data(),  setup.step,         setup.local_damping, setup.levels};
+    return {grains.rows.data(),  grains.spun.data(),  grains.mass.data(), kick.data(),         turn.data(),
+            grains.level.data(), grains.asked.data(), setup.step,         setup.local_damping, setup.levels};
   }
 
   // What evaluate() does to the grains of a chunk that are due, when the contacts' forces on them are there.
   template <bool Levels>
-  void finish_chunk(std::size_t d, bool move) {
+  void finish_chunk(std::size_t d, ForceRow* forces, bool move) {
     const std::uint32_t c = due_chunks[d];
     const Columns on = columns();
     const Vec4 gravity = quad(setup.gravity, 0);
     const std::uint8_t now_due = due;
     const double watched = least_watched;
-    const std::size_t end = std::min((c + 1) * chunk_rows, size());
+    const std::size_t begin = c * chunk_rows, end = std::min(begin + chunk_rows, size());
     Motion motion;
     pressed[c].above.clear();
     std::uint8_t finest = on.highest;
     double gravity_shift = 0, largest = 0;
-    for (std::size_t i = c * chunk_rows; i < end; ++i) {
+    for (std::size_t i = begin; i < end; ++i) {
       Vec4 weight = on.mass[i] * gravity;
       if constexpr (Levels) {
         const std::uint8_t before = on.level[i];
@@ -447,8 +448,8 @@ struct Simulation::Engine {
         if (level != before) gravity_shift += 0.5 * (stride(level) - stride(before)) * weight.dot(on.rows[i].motion);
         weight *= stride(level);
       }
-      const Vec4 force = on.forces[i].force + weight;
-      on.forces[i].force = force;
+      const Vec4 force = forces[i - begin].force + weight;
+      forces[i - begin].force = force;
       largest = std::max(largest, force[3]);
       if (force[3] > watched) [[unlikely]] {
         const GrainRow& grain = on.rows[i];
@@ -456,13 +457,25 @@ struct Simulation::Engine {
           pressed[c].above.push_back(
               {std::uint32_t(i), grains.id[i], force[3], 0, grain.velocity().norm(), grain.angular_velocity().norm(), grain.position()});
       }
-      if (move) kick_and_drift<Levels>(on, i, motion);
+      if (move) kick_and_drift<Levels>(on, i, forces[i - begin], motion);
     }
     pressed[c].largest = largest;
     chunk_level[c] = finest;
     // A grain that changes its level falls for another time than its weight acts.
     pairs.chunk[c].ledger.time_stepping -= setup.step * gravity_shift;
-    if (move) remember(motion, c);
+    if (move)
+      remember(motion, c);
+    else
+      keep_forces(c, forces);
+  }
+
+  // Where a state and the next advance() find them.
+  void keep_forces(std::uint32_t chunk, ForceRow* forces) {
+    const std::size_t begin = chunk * chunk_rows, count = std::min(chunk_rows, size() - begin);
+    ForceRow* const kept = &grains.forces[begin];
+    if (forces == kept) return;
+    std::copy_n(forces, count, kept);
+    std::fill_n(forces, count, ForceRow{});
   }
 
   // Largest components of velocities and of what changes them until all are due again.
@@ -482,11 +495,10 @@ struct Simulation::Engine {
     return share * change;
   }
 
-  // The row of forces is in a cache now, and is not when the next are added to it: it is cleared here.
   template <bool Levels>
-  [[gnu::always_inline]] static inline void kick_and_drift(const Columns& on, std::size_t i, Motion& motion) {
+  [[gnu::always_inline]] static inline void kick_and_drift(const Columns& on, std::size_t i, ForceRow& acting, Motion& motion) {
     const Vec4 three(1, 1, 1, 0);
-    Vec4 faster = (on.kick[i] * three).cwiseProduct(on.forces[i].force), spun = on.turn[i] * on.forces[i].torque;
+    Vec4 faster = (on.kick[i] * three).cwiseProduct(acting.force), spun = on.turn[i] * acting.torque;
     GrainRow& grain = on.rows[i];
     if (on.local_damping != 0) {
       faster = damped(on.local_damping, grain.motion, faster);
@@ -506,11 +518,7 @@ struct Simulation::Engine {
     } else {
       grain.place += on.step * velocity;
     }
-    expect_forces(on, i);
-  }
-
-  static void expect_forces(const Columns& on, std::size_t i) {
-    on.forces[i] = ForceRow{};
+    acting = ForceRow{};
     on.asked[i] = ForceOutput::nothing_asked;
   }
 
@@ -521,7 +529,7 @@ struct Simulation::Engine {
       const Columns on = columns();
       Motion motion;
       for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i)
-        setup.levels == 0 ? kick_and_drift<false>(on, i, motion) : kick_and_drift<true>(on, i, motion);
+        setup.levels == 0 ? kick_and_drift<false>(on, i, grains.forces[i], motion) : kick_and_drift<true>(on, i, grains.forces[i], motion);
       remember(motion, c);
     }
   }
@@ -676,8 +684,7 @@ struct Simulation::Engine {
     due = setup.levels;
     due_chunks.resize(chunk_level.size());
     std::iota(due_chunks.begin(), due_chunks.end(), 0U);
-    for (std::size_t i = 0; i < size(); ++i) expect_forces(columns(), i);
-    evaluate_with(true, true, [](std::size_t) {});  // so that the last frame shows the forces
+    evaluate_with(true, true, [&](std::size_t d, ForceRow* rows) { keep_forces(due_chunks[d], rows); });  // so that the last frame shows the forces
     stop_for_overlap(guarded());
   }
 

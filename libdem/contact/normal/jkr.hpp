@@ -77,7 +77,7 @@ struct JkrForce {
 
   template <class Real>
   static NormalForce<Real> evaluate(const Real& overlap, const PairConstants<Real>& c) {
-    const Mask<Real> sticky = c.adhesion_length > Real(0.0);
+    const Mask<Real> sticky = c.adhesion_scale > Real(0.0);
     const Real y = jkr_root(Real(overlap * c.per_adhesion_length));
     const Real y3 = y * y * y;
     const Real pull_off = (1.5 * std::numbers::pi) * c.work_of_adhesion * c.effective_radius;
@@ -106,6 +106,7 @@ struct JkrBetween : JkrForce {
   // Overlaps, m (<= 0).
   template <class Real>
   static Real form_overlap(const PairConstants<Real>& c) {
+    if constexpr (Form == JkrPoint::touch) return Real(0.0);
     return jkr_overlap(Form) * c.adhesion_length;
   }
   template <class Real>

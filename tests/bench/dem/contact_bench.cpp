@@ -11,6 +11,7 @@
 #include "libdem/neighbors/spatial_order.hpp"
 #include "libdem/simulation/simulation.hpp"
 #include "tests/dem/grains.hpp"
+#include "tests/support/pair_constants.hpp"
 
 // A double that counts what is done to it: how many operations the law takes.
 namespace counting {
@@ -66,6 +67,7 @@ struct Touches {
   std::vector<Touch<Pack>> touch;
   std::vector<Springs<Pack>> springs;
   PairConstants<Pack> constants;
+  PairConstants<double> single;  // the same
 };
 
 Touches make_touches(std::size_t packs) {
@@ -79,10 +81,7 @@ Touches make_touches(std::size_t packs) {
   const double radius = 0.4625e-3, mass = 2500 * sphere_volume(radius);
   const BodyConstants body{radius, mass, sphere_inertia(mass, radius)};
   const PairConstants<double> c = pair_constants(make_material_table(glass.materials, glass.interactions)(0, 0), body, body);
-  Touches t;
-  for (std::size_t m = 0; m < material_constants<double>.size(); ++m)
-    t.constants.*material_constants<Pack>[m] = c.*material_constants<double>[m];
-  for (std::size_t m = 0; m < constants_per_contact; ++m) t.constants.*contact_constants<Pack>[m] = c.*contact_constants<double>[m];
+  Touches t{.touch = {}, .springs = {}, .constants = support::constants_as<Pack>(c), .single = c};
   for (std::size_t k = 0; k < packs; ++k) {
     Touch<Pack> touch;
     touch.overlap = number(1e-9, 1e-6);
@@ -105,11 +104,7 @@ constexpr std::tuple_element_t<0, FixedLaws> law{};  // the default composition,
 counting::Counts operations_of_the_law() {
   using counting::Number;
   const Touches t = make_touches(1);
-  PairConstants<Number> c;
-  for (std::size_t m = 0; m < material_constants<double>.size(); ++m)
-    c.*material_constants<Number>[m] = double((t.constants.*material_constants<Pack>[m])[0]);
-  for (std::size_t m = 0; m < constants_per_contact; ++m)
-    c.*contact_constants<Number>[m] = double((t.constants.*contact_constants<Pack>[m])[0]);
+  const PairConstants<Number> c = support::constants_as<Number>(t.single);
   const auto first = [](const Triple<Pack>& v) { return Triple<Number>{double(v.x[0]), double(v.y[0]), double(v.z[0])}; };
   const Touch<Pack>& from = t.touch[0];
   const Touch<Number> touch{double(from.overlap[0]), first(from.normal), first(from.velocity), first(from.spin_i),

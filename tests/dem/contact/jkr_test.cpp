@@ -6,6 +6,7 @@
 
 #include "libdem/contact/pair_constants.hpp"
 #include "tests/support/csv.hpp"
+#include "tests/support/pair_constants.hpp"
 
 namespace dem {
 namespace {
@@ -14,7 +15,8 @@ PairConstants<double> constants(double modulus, double gamma, double radius) {
   PairConstants<double> c{};
   c.effective_modulus = modulus;
   c.work_of_adhesion = gamma;
-  set_adhesion(c, radius);
+  set_adhesion(c);
+  set_effective_radius(c, radius);
   return c;
 }
 
@@ -108,10 +110,7 @@ TEST(Jkr, WithHardlyAnyAdhesionItIsHertzToo) {
 
 TEST(Jkr, APackGivesTheSameBitsAsSingleNumbers) {
   const PairConstants<double> c = constants(3.28125e10, 0.274, 2.3125e-4);
-  PairConstants<Pack> packed{};
-  packed.effective_modulus = c.effective_modulus;
-  packed.work_of_adhesion = c.work_of_adhesion;
-  for (std::size_t m = 0; m < constants_per_contact; ++m) packed.*contact_constants<Pack>[m] = c.*contact_constants<double>[m];
+  const PairConstants<Pack> packed = support::constants_as<Pack>(c);
   for (double start = -0.47; start < 1e5; start = start * (start > 0 ? 1.7 : 0.7) + (start < 0 ? 0.05 : 0)) {
     const Pack overlap([&](auto lane) { return (start + 0.001 * double(lane)) * c.adhesion_length; });
     const NormalForce<Pack> f = Jkr::evaluate(overlap, packed);

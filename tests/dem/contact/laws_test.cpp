@@ -10,6 +10,7 @@
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/errors.hpp"
 #include "libdem/particles/particles.hpp"
+#include "tests/support/pair_constants.hpp"
 
 namespace dem {
 namespace {
@@ -267,10 +268,7 @@ TEST(EveryLaw, FormsAndLetsGoWhereItSays) {
 TEST(EveryLaw, APackGivesTheSameBitsAsSingleNumbers) {
   for_every_law([](const LawChoice& law, const PairConstants<double>& c) {
     Random random;
-    PairConstants<Pack> packed;
-    for (std::size_t m = 0; m < material_constants<double>.size(); ++m)
-      packed.*material_constants<Pack>[m] = c.*material_constants<double>[m];
-    for (std::size_t m = 0; m < constants_per_contact; ++m) packed.*contact_constants<Pack>[m] = c.*contact_constants<double>[m];
+    const PairConstants<Pack> packed = support::constants_as<Pack>(c);
     for (int k = 0; k < 30; ++k) {
       std::vector<Sample> lanes;
       for (std::size_t l = 0; l < pack_width; ++l) lanes.push_back(sample(random, c));

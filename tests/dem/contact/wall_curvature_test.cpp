@@ -53,7 +53,8 @@ TEST(WallCurvature, AdhesionLengthFollowsTheEffectiveRadius) {
   PairConstants<double> flat{};
   flat.effective_modulus = 3.28125e10;
   flat.work_of_adhesion = 0.274;
-  set_adhesion(flat, 0.4625e-3);
+  set_adhesion(flat);
+  set_effective_radius(flat, 0.4625e-3);
   const PairConstants<double> curved = on_curved_wall(flat, {1 / 12.5e-3, 0});
   EXPECT_NEAR(curved.adhesion_length / adhesion_length(0.274, curved.effective_radius, 3.28125e10), 1, 1e-14);
 }
@@ -61,7 +62,8 @@ TEST(WallCurvature, AdhesionLengthFollowsTheEffectiveRadius) {
 TEST(WallCurvature, AHollowAsNarrowAsTheSphereIsBounded) {
   PairConstants<double> flat{};
   flat.effective_modulus = 3.28125e10;
-  set_adhesion(flat, 1e-3);
+  set_adhesion(flat);
+  set_effective_radius(flat, 1e-3);
   for (const double hollow : {1e-3, 0.999e-3, 0.5e-3, 1.0001e-3}) {
     const PairConstants<double> c = on_curved_wall(flat, {1 / hollow, 0});
     EXPECT_DOUBLE_EQ(c.effective_radius, conforming * 1e-3) << hollow;
