@@ -742,9 +742,9 @@ std::size_t Simulation::bytes() const {
   const GrainStore& g = e.grains;
   const Particles& p = g.caller;
   return recorded + bytes_of(p.id, p.material, p.radius, p.position, p.velocity, p.angular_velocity, g.caller_mass, g.caller_inertia) +
-         bytes_of(g.order, g.row_of, g.rows, g.forces, g.mass, g.inertia, g.material, g.id, g.listed, g.level, g.asked, e.kick, e.turn) +
-         bytes_of(e.pairs.block, e.pairs.activity, e.pairs.kind, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.crossing, e.pairs.incoming,
-                  e.pairs.chunk) +
+         bytes_of(g.order, g.row_of, g.rows, g.forces, g.spun, g.mass, g.inertia, g.material, g.id, g.listed, g.level, g.asked, e.kick, e.turn) +
+         bytes_of(e.pairs.block, e.pairs.activity, e.pairs.kind, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.crossing,
+                  e.pairs.incoming, e.pairs.chunk, e.pairs.sheets) +
          bytes_of(e.walls.candidate, e.walls.activity, e.walls.parts, e.walls.near_parts, e.walls.contact, e.walls.last, e.walls.chunk, e.walls.chunk_begin);
 }
 double Simulation::stable_step() const { return dem::stable_step(engine_->guarded()); }
