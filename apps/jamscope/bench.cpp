@@ -106,10 +106,11 @@ std::string as_text(const Measured& m, const CaseFile& file, const BenchOptions&
 
 int bench(const BenchOptions& options) {
   Console console(stderr, options.log_format, options.quiet);
-  CaseFile file = read_case_file(options.case_path, options.overrides);
+  std::vector<std::string> overrides = options.overrides;
+  if (options.at_own_rate) overrides.push_back("run.step=auto");
+  CaseFile file = read_case_file(options.case_path, overrides);
   if (options.beads) {
     const double grains = dem::derive(file.physics).grains;
-    std::vector<std::string> overrides = options.overrides;
     const double depth = file.physics.bed.depth * *options.beads / grains;
     overrides.push_back(fmt::format("bed.depth={} m", depth));
     file = read_case_file(options.case_path, overrides);

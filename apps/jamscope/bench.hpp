@@ -13,7 +13,8 @@ struct BenchOptions {
   std::vector<std::string> overrides;  // "key=value", see read_case_file
   std::string bed_cache;               // folder of settled beds, or empty
   int threads = 1;
-  bool uniform = false;  // every contact at every step, whatever the case says
+  // Whatever the case says, not both: every contact at every step; contacts at their own rate.
+  bool uniform = false, at_own_rate = false;
   double seconds = 10;   // s of wall time, measured
   double warm_up = 2;    // s of wall time before that
   std::optional<double> beads;  // the bed as deep as so many grains make it

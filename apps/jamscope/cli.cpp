@@ -310,7 +310,8 @@ Command add_bench(CLI::App& app, Options& o) {
   BenchOptions& b = o.bench;
   c.add_option("CASE", b.case_path, "case file (TOML)")->required()->type_name("");
   c.add_option("--beads", b.beads, "as deep a bed as holds about so many grains")->type_name("N")->check(number_from(0, false));
-  c.add_flag("--uniform", b.uniform, "every contact at every step, whatever the case says");
+  CLI::Option* const uniform = c.add_flag("--uniform", b.uniform, "every contact at every step, whatever the case says");
+  c.add_flag("--auto", b.at_own_rate, "contacts at their own rate (run.step=auto), whatever the case says")->excludes(uniform);
   b.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   add_threads(c, b.threads, "number of threads");
   const auto add_seconds = [&](const char* name, double& seconds, const char* doc, bool may_be_zero) {

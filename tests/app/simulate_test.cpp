@@ -289,16 +289,17 @@ TEST_F(SimulateProgram, FollowsJamsFromStepToStepAndCapturesThem) {
 }
 
 TEST_F(SimulateProgram, BenchSaysHowFastAndWhereTheTimeGoes) {
-  const std::string options = "bench " + (folder_ / "pea.toml") + " --bed-cache " + cache_ + " --seconds 0.3 --warm-up 0.1 -q --threads 1 --set run.step=auto";
-  const Outcome text = run_program(options);
+  const std::string options = "bench " + (folder_ / "pea.toml") + " --bed-cache " + cache_ + " --seconds 0.3 --warm-up 0.1 -q --threads 1";
+  const Outcome text = run_program(options + " --auto");
   ASSERT_EQ(text.code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("grain steps per second"));
   const auto of = [&](const std::string& more) { return nlohmann::json::parse(run_program(options + " --json" + more).out); };
-  const nlohmann::json levels = of(""), uniform = of(" --uniform");
+  const nlohmann::json levels = of(" --auto"), uniform = of(" --uniform");
   EXPECT_GT(levels["levels"], 0);
   EXPECT_EQ(uniform["levels"], 0);
   EXPECT_EQ(uniform["evaluations_over_uniform"], 1.0);
   EXPECT_LT(levels["evaluations_over_uniform"], 1.0);
+  EXPECT_EQ(run_program(options + " --auto --uniform").code, 2);
   for (const nlohmann::json& j : {levels, uniform}) {
     EXPECT_GT(j["particle_steps_per_second"], 0);
     EXPECT_GT(j["bytes_per_grain"], 500);  // its own rows alone
