@@ -11,7 +11,7 @@
 #include "libdem/neighbors/spatial_order.hpp"
 #include "libdem/simulation/simulation.hpp"
 #include "tests/dem/grains.hpp"
-#include "tests/support/pair_constants.hpp"
+#include "tests/dem/pair_constants.hpp"
 
 // A double that counts what is done to it: how many operations the law takes.
 namespace counting {

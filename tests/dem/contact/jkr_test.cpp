@@ -6,7 +6,7 @@
 
 #include "libdem/contact/pair_constants.hpp"
 #include "tests/support/csv.hpp"
-#include "tests/support/pair_constants.hpp"
+#include "tests/dem/pair_constants.hpp"
 
 namespace dem {
 namespace {

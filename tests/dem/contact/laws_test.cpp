@@ -10,7 +10,7 @@
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/errors.hpp"
 #include "libdem/particles/particles.hpp"
-#include "tests/support/pair_constants.hpp"
+#include "tests/dem/pair_constants.hpp"
 
 namespace dem {
 namespace {
