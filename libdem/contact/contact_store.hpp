@@ -88,7 +88,6 @@ struct PairContacts {
     std::vector<PairForce> recorded;  // by lane, of the last evaluation that recorded
   };
   std::vector<Chunk> chunk;
-  std::vector<ForceSheet> sheets;  // working space, one a thread; zero between evaluations
 
   std::size_t lanes() const { return width * block.size(); }
   std::uint32_t first(std::size_t lane) const { return block[lane / width].first[lane % width]; }

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <bit>
 #include <thread>
+#include <utility>
 
 #include "libdem/contact/rows.hpp"
 #include "libdem/errors.hpp"
@@ -814,14 +815,14 @@ void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, W
 }
 
 // What pairs of other chunks do to the grains of this one.
-void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, ForceRow* rows, std::vector<std::uint8_t>& asked) {
+void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, ForceSheet& sheet, std::vector<std::uint8_t>& asked) {
   for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < pairs.chunk[chunk].incoming_end; ++k) {
     const PairContacts::Incoming& in = pairs.incoming[k];
     const Activity& activity = pairs.activity[in.block];
     if (activity.asleep || activity.level > due) continue;
     asked[in.row] = std::min(asked[in.row], activity.level);
     if (!activity.acts) continue;
-    ForceRow& to = rows[in.row - chunk * chunk_rows];
+    ForceRow& to = sheet[in.row - chunk * chunk_rows];
     to.force += pairs.crossing[in.crossing].force;
     to.torque += pairs.crossing[in.crossing].torque;
   }
@@ -846,7 +847,7 @@ struct Share {
 enum class Progress : std::uint8_t { to_evaluate, waiting, taken };  // of a chunk; taken by whoever finishes it
 
 // Each thread takes the next chunk of its share, evaluates it and finishes it. If chunks that send forces to it are still to be evaluated,
-// its sums are put aside, and when none is left to take, all finish together what has waited, whoever evaluated it.
+// it keeps its sheet, and when none is left to take, all finish together what has waited, whoever evaluated it.
 template <class Law, bool Keep>
 double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out,
                     const FinishChunk& finish) {
@@ -855,7 +856,8 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
   const std::size_t threads = count >= few_chunks ? std::size_t(omp_get_max_threads()) : 1;
   std::vector<Share> shares(threads);
   std::vector<std::atomic<Progress>> progress(count);
-  if (pairs.sheets.size() < threads) pairs.sheets.resize(threads);
+  std::vector<std::unique_ptr<ForceSheet>> kept(count);  // of chunks that wait
+  out.sheets.prepare(threads);
   std::atomic<std::size_t> finished = 0;
   for (std::size_t t = 0; t < threads; ++t) {
     shares[t].next = count * t / threads;
@@ -867,25 +869,23 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
     const auto ready = [&](std::size_t k) {
       return std::ranges::none_of(pairs.chunk[in.due_chunks[k]].senders, [&](std::uint32_t sender) { return pending(pairs.chunk[sender]); });
     };
-    const auto finish_with = [&](std::size_t k, ForceRow* rows) {
-      add_crossing(pairs, in.due_chunks[k], in.due, rows, out.asked);
-      finish(k, rows);
+    const auto finish_with = [&](std::size_t k, ForceSheet& sheet) {
+      add_crossing(pairs, in.due_chunks[k], in.due, sheet, out.asked);
+      finish(k, sheet);
       ++finished;
     };
-    const auto aside = [&](std::size_t k) { return &out.forces[in.due_chunks[k] * chunk_rows]; };
-    ForceSheet& sheet = pairs.sheets[me];
+    std::unique_ptr<ForceSheet>& sheet = out.sheets.of_thread(me);
     for (std::size_t turn = 0; turn < threads; ++turn) {
       Share& share = shares[(me + turn) % threads];
       for (std::size_t k = share.next++; k < share.end; k = share.next++) {
         const std::uint32_t number = in.due_chunks[k], begin = std::uint32_t(number * chunk_rows);
-        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, ChunkOutput{sheet, begin, out.asked});
+        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, ChunkOutput{*sheet, begin, out.asked});
         std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
         if (ready(k)) {
           progress[k].store(Progress::taken, std::memory_order_relaxed);
-          finish_with(k, sheet.data());
+          finish_with(k, *sheet);
         } else {
-          std::copy_n(sheet.begin(), std::min(chunk_rows, in.level.size() - begin), aside(k));
-          sheet.fill({});
+          kept[k] = std::exchange(sheet, out.sheets.take());
           progress[k].store(Progress::waiting, std::memory_order_release);
         }
       }
@@ -895,8 +895,10 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
     wait_until([&] {
       for (std::size_t k = 0; k < count; ++k)
         if (Progress as = Progress::waiting; progress[k].load(std::memory_order_relaxed) == as && ready(k) &&
-                                             progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire))
-          finish_with(k, aside(k));
+                                             progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire)) {
+          finish_with(k, *kept[k]);
+          out.sheets.give_back(std::move(kept[k]));
+        }
       return finished == count;
     });
   }

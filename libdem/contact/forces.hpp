@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "libdem/contact/contact_store.hpp"
+#include "libdem/contact/force_sheets.hpp"
 #include "libdem/contact/laws.hpp"
 
 namespace dem {
@@ -28,19 +29,19 @@ struct ForceInput {
 };
 
 struct ForceOutput {
-  LargeArray<ForceRow>& forces;  // [N] of chunks that wait to be finished
+  ForceSheets& sheets;
   std::vector<std::uint8_t>& asked;  // [N], the finest level that an evaluated contact asks of the grain; and the phantoms'
   static constexpr std::uint8_t nothing_asked = 255;
 };
 
-// d: row in ForceInput::due_chunks. rows: what acts on the grains of that chunk, in their order; to be left zero.
-using FinishChunk = std::function<void(std::size_t d, ForceRow* rows)>;
+// d: row in ForceInput::due_chunks. sheet: what acts on the grains of that chunk, in their order; to be left zero.
+using FinishChunk = std::function<void(std::size_t d, ForceSheet& sheet)>;
 
 // Evaluates all contacts that are due with the law; memory and, where one is kept, the ledger sums of the stores' chunks change.
 // What is asked of grains that are due must be nothing. Returns the largest overlap over the smaller radius.
 //
 // Calls finish once for each of the due chunks with the sums over these contacts, when all forces on its grains are there: as soon as that
-// is, while they are still in a cache, from whichever thread. Sums of most chunks are never anywhere else than in the working space of a thread. Pairs belong to the chunk of their first grain and
+// is, while they are still in a cache, from whichever thread. Sums are never anywhere else than in sheets. Pairs belong to the chunk of their first grain and
 // the second comes later, so contacts that are still to be evaluated then do not look at that chunk's grains: finish may move
 // them.
 //

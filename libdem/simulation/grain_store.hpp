@@ -19,7 +19,7 @@ struct GrainStore {
   std::vector<std::uint32_t> order;   // the caller's row
   std::vector<std::uint32_t> row_of;  // the inverse: row here of the caller's row
   LargeArray<GrainRow> rows;         // and phantoms
-  LargeArray<ForceRow> forces;       // of the last step of an advance; of chunks that wait for others'
+  LargeArray<ForceRow> forces;       // at the end of an advance
   LargeArray<Vec4> spun;             // rad/s, half of the last change of the angular velocity; and phantoms
   std::vector<double> mass, inertia;  // kg, kg m^2
   std::vector<std::uint8_t> material;

@@ -62,6 +62,7 @@ struct Simulation::Engine {
   double next_look = 0;    // m, on the odometer: when to look how much of the skin is left
   PairContacts pairs;
   WallContacts walls;
+  ForceSheets sheets;
   std::vector<WallLoad> loads;   // [walls] of the last evaluation of all contacts
   std::vector<WallLoad> shares;  // [walls] of this step, in the mean over the steps (WallContacts::Chunk)
 
@@ -218,12 +219,12 @@ struct Simulation::Engine {
             .due = due, .highest = setup.levels, .foresight = foresight, .jolt = closing_jolt, .level = grains.level,
             .spun = grains.spun, .due_chunks = due_chunks};
   }
-  ForceOutput force_output() { return {grains.forces, grains.asked}; }
+  ForceOutput force_output() { return {sheets, grains.asked}; }
 
   // Forces on every grain that is due; gives it its level and, if asked to, moves it.
   void evaluate(bool look, bool record, bool move) {
-    const auto finish = [&](std::size_t d, ForceRow* rows) {
-      setup.levels == 0 ? finish_chunk<false>(d, rows, move) : finish_chunk<true>(d, rows, move);
+    const auto finish = [&](std::size_t d, ForceSheet& sheet) {
+      setup.levels == 0 ? finish_chunk<false>(d, sheet, move) : finish_chunk<true>(d, sheet, move);
     };
     window.largest_overlap = std::max(window.largest_overlap, evaluate_with(look, record, finish));
     for (const std::uint32_t c : due_chunks) {
@@ -423,7 +424,7 @@ struct Simulation::Engine {
 
   // What evaluate() does to the grains of a chunk that are due, when the contacts' forces on them are there.
   template <bool Levels>
-  void finish_chunk(std::size_t d, ForceRow* forces, bool move) {
+  void finish_chunk(std::size_t d, ForceSheet& forces, bool move) {
     const std::uint32_t c = due_chunks[d];
     const Columns on = columns();
     const Vec4 gravity = quad(setup.gravity, 0);
@@ -470,12 +471,10 @@ struct Simulation::Engine {
   }
 
   // Where a state and the next advance() find them.
-  void keep_forces(std::uint32_t chunk, ForceRow* forces) {
-    const std::size_t begin = chunk * chunk_rows, count = std::min(chunk_rows, size() - begin);
-    ForceRow* const kept = &grains.forces[begin];
-    if (forces == kept) return;
-    std::copy_n(forces, count, kept);
-    std::fill_n(forces, count, ForceRow{});
+  void keep_forces(std::uint32_t chunk, ForceSheet& forces) {
+    const std::size_t begin = chunk * chunk_rows;
+    std::copy_n(forces.begin(), std::min(chunk_rows, size() - begin), &grains.forces[begin]);
+    forces.fill({});
   }
 
   // Largest components of velocities and of what changes them until all are due again.
@@ -684,7 +683,7 @@ struct Simulation::Engine {
     due = setup.levels;
     due_chunks.resize(chunk_level.size());
     std::iota(due_chunks.begin(), due_chunks.end(), 0U);
-    evaluate_with(true, true, [&](std::size_t d, ForceRow* rows) { keep_forces(due_chunks[d], rows); });  // so that the last frame shows the forces
+    evaluate_with(true, true, [&](std::size_t d, ForceSheet& sheet) { keep_forces(due_chunks[d], sheet); });  // so that the last frame shows the forces
     stop_for_overlap(guarded());
   }
 
@@ -744,7 +743,7 @@ std::size_t Simulation::bytes() const {
   return recorded + bytes_of(p.id, p.material, p.radius, p.position, p.velocity, p.angular_velocity, g.caller_mass, g.caller_inertia) +
          bytes_of(g.order, g.row_of, g.rows, g.forces, g.spun, g.mass, g.inertia, g.material, g.id, g.listed, g.level, g.asked, e.kick, e.turn) +
          bytes_of(e.pairs.block, e.pairs.activity, e.pairs.kind, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.crossing,
-                  e.pairs.incoming, e.pairs.chunk, e.pairs.sheets) +
+                  e.pairs.incoming, e.pairs.chunk) + e.sheets.bytes() +
          bytes_of(e.walls.candidate, e.walls.activity, e.walls.parts, e.walls.near_parts, e.walls.contact, e.walls.last, e.walls.chunk, e.walls.chunk_begin);
 }
 double Simulation::stable_step() const { return dem::stable_step(engine_->guarded()); }
