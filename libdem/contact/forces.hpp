@@ -41,9 +41,9 @@ using FinishChunk = std::function<void(std::size_t d, ForceSheet& sheet)>;
 // What is asked of grains that are due must be nothing. Returns the largest overlap over the smaller radius.
 //
 // Calls finish once for each of the due chunks with the sums over these contacts, when all forces on its grains are there: as soon as that
-// is, while they are still in a cache, from whichever thread. Sums are never anywhere else than in sheets. Pairs belong to the chunk of their first grain and
-// the second comes later, so contacts that are still to be evaluated then do not look at that chunk's grains: finish may move
-// them.
+// is, while they are still in a cache, from whichever thread. Sums are never anywhere else than in sheets. Pairs belong to the chunk of their
+// first grain and the second comes later, so contacts that are still to be evaluated then do not look at that chunk's grains: finish may
+// move them.
 //
 // Results do not depend on the number of threads. Throws PhysicsError where a sphere touches one wall in more places than
 // WallCandidate::capacity.

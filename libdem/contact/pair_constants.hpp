@@ -11,10 +11,15 @@
 
 namespace dem {
 
+// (4 pi^2 W^2/E*^2)^(1/3), m^(2/3), to more digits than a double has.
+inline long double adhesion_scale(double work_of_adhesion, double modulus) {
+  const long double strain = (long double)(work_of_adhesion) / modulus, pi = std::numbers::pi_v<long double>;
+  return std::cbrt(4 * pi * pi * (strain * strain));
+}
+
 // a0^2/R* = (4 pi^2 W^2 R*/E*^2)^(1/3), m: the overlap at which JKR's contact radius would follow a^2 = R* overlap alone.
 inline double adhesion_length(double work_of_adhesion, double effective_radius, double modulus) {
-  const double strain = work_of_adhesion / modulus;
-  return std::cbrt(4 * std::numbers::pi * std::numbers::pi * (strain * strain) * effective_radius);
+  return double(adhesion_scale(work_of_adhesion, modulus) * std::cbrt((long double)(effective_radius)));
 }
 
 // F_c = (3/2) pi W R*, N: largest tension a JKR contact carries.
@@ -39,8 +44,7 @@ inline double harmonic(double a, double b) { return a * b / (a + b); }
 // From the work of adhesion and the modulus what set_effective_radius() needs of them.
 inline void set_adhesion(PairConstants<double>& c) {
   // Each is rounded once, as the law takes powers of them.
-  const long double strain = (long double)(c.work_of_adhesion) / c.effective_modulus, pi = std::numbers::pi_v<long double>;
-  const long double scale = std::cbrt(4 * pi * pi * (strain * strain));
+  const long double scale = adhesion_scale(c.work_of_adhesion, c.effective_modulus);
   c.adhesion_scale = double(scale);
   // Adhesion that no digit of a force shows is none: overlaps in its lengths would be beyond the numbers that jkr_root() bears.
   if (c.adhesion_scale < 1e-30) c.adhesion_scale = 0;

@@ -39,13 +39,14 @@ struct alignas(64) ForceRow {
 // cross chunks cost more than others.
 inline constexpr std::size_t chunk_rows = 512;
 inline std::size_t chunks_of(std::size_t grains) { return (grains + chunk_rows - 1) / chunk_rows; }
-// What acts on the grains of a chunk, and on its phantom.
-using ForceSheet = std::array<ForceRow, chunk_rows + 1>;
 inline GrainRow phantom() {
   GrainRow row;
   row.place = {1e30, 0, 0, 1};
   row.motion = {0, 0, 0, 1};
   return row;
 }
+
+// What acts on the grains of a chunk, and on its phantom.
+using ForceSheet = std::array<ForceRow, chunk_rows + 1>;
 
 }  // namespace dem
