@@ -551,7 +551,7 @@ void inherit(WallContacts& walls, WallCandidate& candidate, const std::vector<Wa
 PairConstants<double> constants_of(const ForceInput& in, const WallCandidate& candidate, const WallContact& contact) {
   PairConstants<double> c = in.materials.pair[candidate.material_pair];
   for (std::size_t m = 0; m < constants_per_contact; ++m) c.*contact_constants<double>[m] = candidate.constant[m];
-  set_effective_radius(c, in.grains[candidate.particle].radius());
+  set_effective_radius(c, in.grains[candidate.particle].radius(), c.cube_root, 1 / c.cube_root);
   return in.wall_curvature ? on_curved_wall(c, contact.touch.curvature) : c;
 }
 

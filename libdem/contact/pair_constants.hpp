@@ -91,10 +91,12 @@ inline PairConstants<double> wall_constants(const PairConstants<double>& materia
 // an overlap is exact to 1e-5). A hollow nearly as narrow as the sphere conforms to it and is no contact at a point: R* stops
 // at `conforming` R.
 inline constexpr double conforming = 10;
+// Of a flat wall's, those where the wall is hollow enough to stop R*.
 inline PairConstants<double> most_conforming(PairConstants<double> flat) {
   set_effective_radius(flat, flat.effective_radius * conforming);
   return flat;
 }
+// The same for these curvatures.
 inline PairConstants<double> on_curved_wall(PairConstants<double> flat, const std::array<double, 2>& curvature) {
   if (curvature[0] == 0 && curvature[1] == 0) return flat;
   const double radius = flat.effective_radius;
