@@ -27,14 +27,14 @@ template <class Real>
 Triple<Real> against(const Triple<Real>& w, const Real& size, const PairConstants<Real>& c, const Interval<Real>& dt) {
   const Real size2 = dot(w, w);
   const Mask<Real> turning = size2 > Real(0.0);
-  const Real per_spin = size / square_root(select(turning, size2, Real(1.0)));
+  const Real per_spin = size * inverse_root(size2);
   const Real most = largest_share_of_spin * c.effective_inertia * dt.rate;
-  return w * select(turning, Real(-1.0) * smaller(per_spin, most), Real(0.0));
+  return w * select(turning, -smaller(per_spin, most), Real(0.0));
 }
 
 template <class Real>
 Triple<Real> negative(const Triple<Real>& t) {
-  return {Real(0.0) - t.x, Real(0.0) - t.y, Real(0.0) - t.z};
+  return {-t.x, -t.y, -t.z};
 }
 
 // N, the force on a grain of this mass, kg, up to which a constant torque resists in full where the grain rolls along a wall with this spin,
@@ -102,7 +102,7 @@ struct ElasticPlasticRolling {
     const Real limit = lever * larger(normal.elastic, Real(0.0));
     const Real size2 = dot(trial, trial);
     const Mask<Real> plastic = size2 > limit * limit;
-    springs.rolling = trial * select(plastic, limit / square_root(select(plastic, size2, Real(1.0))), Real(1.0));
+    springs.rolling = trial * select(plastic, limit * inverse_root(size2), Real(1.0));
     // Explicit damping, and so no more than the largest share of the spin.
     const Real damping = smaller(2.0 * c.rolling_damping * square_root(3.5 * c.effective_inertia * stiffness),
                                  Real(rolling::largest_share_of_spin * c.effective_inertia * dt.rate));

@@ -33,27 +33,26 @@ struct MindlinSpring {
     const Real length2 = dot(old, old);
     const Triple<Real> flat = subtract_product(old, touch.normal, dot(old, touch.normal));
     const Real flat2 = dot(flat, flat);
-    const Mask<Real> turn = flat2 > Real(0.0);
+    const Real both = length2 * flat2;
     const Real radius = normal.contact_radius();
-    const Real keep = select(turn, square_root(length2 / select(turn, flat2, Real(1.0))), Real(0.0));
+    const Real keep = select(both > Real(0.0), length2 * inverse_root(both), Real(0.0));  // sqrt(length2/flat2)
     const Triple<Real> carried = flat * (keep * Variant::share(springs.contact_radius, radius));
     const Triple<Real> trial = multiply_add(v_t, dt, carried);
 
     const Real k_t = 8.0 * c.effective_shear * radius;
-    const Triple<Real> viscous = v_t * (Real(0.0) - damping);
-    const Triple<Real> unlimited = multiply_add(trial, Real(0.0) - k_t, viscous);
+    const Triple<Real> viscous = v_t * -damping;
+    const Triple<Real> unlimited = subtract_product(viscous, trial, k_t);
     const Real limit = c.friction * load;
     const Real size2 = dot(unlimited, unlimited);
     const Mask<Real> sliding = size2 > limit * limit;
-    // limit/|F_t| and that over k_t by one division; 0 where there is no stiffness.
-    const Real size_k = square_root(size2) * k_t;
-    const Mask<Real> slips = sliding && (size_k > Real(0.0));
-    const Real compliant = select(slips, limit / select(slips, size_k, Real(1.0)), Real(0.0));
+    // limit/(|F_t| k_t); 0 where there is no stiffness.
+    const Real size_k2 = size2 * (k_t * k_t);
+    const Real compliant = select(sliding && (size_k2 > Real(0.0)), limit * inverse_root(size_k2), Real(0.0));
     const Triple<Real> limited = unlimited * (compliant * k_t);
-    springs.tangential = select(sliding, unlimited * (Real(0.0) - compliant), trial);
+    springs.tangential = select(sliding, unlimited * -compliant, trial);
 
     TangentialForce<Real> f;
-    f.elastic = select(sliding, limited, trial * (Real(0.0) - k_t));
+    f.elastic = select(sliding, limited, trial * -k_t);
     f.viscous = select(sliding, Triple<Real>{Real(0.0), Real(0.0), Real(0.0)}, viscous);
     f.sliding = sliding;
     const Triple<Real> slip = trial - springs.tangential;
