@@ -70,17 +70,11 @@ inline void store(const Triple<Pack>& values, std::array<PairContacts::Column, 3
 // What the contacts of one chunk of grains do to them.
 struct ChunkOutput {
   ForceSheet& sheet;
-  std::uint32_t begin;  // row of the chunk's first grain
   std::vector<std::uint8_t>& asked;
 
-  ForceRow& of(std::uint32_t row) const { return sheet[row - begin]; }
+  // Of a phantom that of some grain of the chunk: nothing is added to it.
+  ForceRow& of(std::uint32_t row) const { return sheet[row % chunk_rows]; }
 };
-// Where in the sheet rows of grains of the chunk, or of its phantom, are.
-inline std::array<std::uint32_t, PairContacts::width> in_sheet(const std::array<std::uint32_t, PairContacts::width>& rows, std::uint32_t begin) {
-  std::array<std::uint32_t, PairContacts::width> at;
-  for (std::size_t k = 0; k < PairContacts::width; ++k) at[k] = std::min(rows[k] - begin, std::uint32_t(chunk_rows));
-  return at;
-}
 
 // Each constant of a table is get(the member, its number in the table). Members are constants of the compiler, and written out:
 // it sees through a table and unrolls a loop too late to keep packs out of memory.
@@ -299,40 +293,43 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   const auto arrival_i = load_quads([&](std::size_t k) { return i(k).arrival.data(); });
   const auto arrival_j = load_quads([&](std::size_t k) { return j(k).arrival.data(); });
 
-  LaneTouch r;
-  PairConstants<Pack>& c = r.constants;
+  PairConstants<Pack> c;
   fill_constants(c, in.materials, pairs, number, lane);
 
   const Triple<Pack> branch{x_j - x_i, y_j - y_i, z_j - z_i};
-  const Pack distance = square_root(dot(branch, branch)), curvature = inverse_i + inverse_j;  // 1/R*
-  const Pack per_both = 1.0 / (distance * curvature);  // one quotient for two
-  set_effective_radius(c, Pack(distance * per_both), c.cube_root, Pack(c.cube_root * c.cube_root * curvature));
-  Touch<Pack>& touch = r.touch;
+  const Pack distance2 = dot(branch, branch), per_distance = inverse_root(distance2);
+  const Pack distance = only(distance2 > Pack(0.0), distance2 * per_distance), curvature = inverse_i + inverse_j;  // 1/R*
+  const Pack square = c.cube_root * c.cube_root;
+  set_effective_radius(c, Pack(square * c.cube_root), c.cube_root, Pack(square * curvature));
   // The contact point divides the branch in the ratio of the radii: R_i/(R_i + R_j) = R*/R_j.
-  const Pack share = distance * c.effective_radius;
-  touch.arm_i = share * inverse_j;
-  touch.arm_j = share * inverse_i;
-  touch.overlap = radius_i + radius_j - distance;
-  touch.normal = branch * Pack(curvature * per_both);
-  r.motion = {{vx_i - vx_j, vy_i - vy_j, vz_i - vz_j}, {spin_i[0], spin_i[1], spin_i[2]}, {spin_j[0], spin_j[1], spin_j[2]}};
-  touch.spin_i = r.motion.spin_i;
-  touch.spin_j = r.motion.spin_j;
-  r.per_stride = larger(arrival_i[3], arrival_j[3]);
-  Triple<Pack> centres = r.motion.centres, arriving{arrival_i[0] - arrival_j[0], arrival_i[1] - arrival_j[1], arrival_i[2] - arrival_j[2]};
-  if (const Pack late_i = late(steps, arrival_i[3]), late_j = late(steps, arrival_j[3]); any_of(late_i + late_j > Pack(0.0))) {
-    const auto spun_i = load_quads([&](std::size_t k) { return in.spun[block.first[lane + k]].data(); });
-    const auto spun_j = load_quads([&](std::size_t k) { return in.spun[block.second[lane + k]].data(); });
-    touch.spin_i = subtract_product(touch.spin_i, Triple<Pack>{spun_i[0], spun_i[1], spun_i[2]}, late_i);
-    touch.spin_j = subtract_product(touch.spin_j, Triple<Pack>{spun_j[0], spun_j[1], spun_j[2]}, late_j);
-    const Triple<Pack> changed = Triple<Pack>{arrival_i[0] - vx_i, arrival_i[1] - vy_i, arrival_i[2] - vz_i} * late_i -
-                                 Triple<Pack>{arrival_j[0] - vx_j, arrival_j[1] - vy_j, arrival_j[2] - vz_j} * late_j;
-    centres = centres - changed;
-    arriving = subtract_product(arriving, changed, Pack(2.0));
-  }
-  touch.velocity = centres + cross(multiply_add(touch.spin_i, touch.arm_i, touch.spin_j * touch.arm_j), touch.normal);
-  touch.closing = dot(arriving, touch.normal);
-  r.inverse_smaller_radius = larger(inverse_i, inverse_j);
-  return r;
+  const Pack share = distance * c.effective_radius, arm_i = share * inverse_j, arm_j = share * inverse_i;
+  const Triple<Pack> normal = branch * per_distance;
+  const LaneMotion motion{{vx_i - vx_j, vy_i - vy_j, vz_i - vz_j}, {spin_i[0], spin_i[1], spin_i[2]}, {spin_j[0], spin_j[1], spin_j[2]}};
+  Triple<Pack> turning_i = motion.spin_i, turning_j = motion.spin_j, centres = motion.centres;
+  Triple<Pack> arriving{arrival_i[0] - arrival_j[0], arrival_i[1] - arrival_j[1], arrival_i[2] - arrival_j[2]};
+  if (steps > 1)
+    if (const Pack late_i = late(steps, arrival_i[3]), late_j = late(steps, arrival_j[3]); any_of(late_i + late_j > Pack(0.0))) {
+      const auto spun_i = load_quads([&](std::size_t k) { return in.spun[block.first[lane + k]].data(); });
+      const auto spun_j = load_quads([&](std::size_t k) { return in.spun[block.second[lane + k]].data(); });
+      turning_i = subtract_product(turning_i, Triple<Pack>{spun_i[0], spun_i[1], spun_i[2]}, late_i);
+      turning_j = subtract_product(turning_j, Triple<Pack>{spun_j[0], spun_j[1], spun_j[2]}, late_j);
+      const Triple<Pack> changed = Triple<Pack>{arrival_i[0] - vx_i, arrival_i[1] - vy_i, arrival_i[2] - vz_i} * late_i -
+                                   Triple<Pack>{arrival_j[0] - vx_j, arrival_j[1] - vy_j, arrival_j[2] - vz_j} * late_j;
+      centres = centres - changed;
+      arriving = subtract_product(arriving, changed, Pack(2.0));
+    }
+  const Triple<Pack> velocity = centres + cross(multiply_add(turning_i, arm_i, turning_j * arm_j), normal);
+  return {c, {radius_i + radius_j - distance, normal, velocity, turning_i, turning_j, arm_i, arm_j, dot(arriving, normal)}, motion,
+          larger(inverse_i, inverse_j), larger(arrival_i[3], arrival_j[3])};
+}
+
+// By value and on its own: what one lane after the other is read of goes through memory, and with it all that a law gives, whether or not
+// anything is recorded.
+[[gnu::noinline]] void record(PairContacts::Chunk& chunk, std::size_t first_lane, Mask<Pack> hold, Mask<Pack> sliding, Triple<Pack> tangential,
+                              Pack elastic, Pack damping) {
+  for (std::size_t k = 0; k < pack_width; ++k)
+    if (hold[k])
+      chunk.recorded.push_back({std::uint32_t(first_lane + k), sliding[k], lane_of(tangential, k), elastic[k], damping[k]});
 }
 
 // Lanes of a block that touch like this: law, impulses of so many steps added to the grains. Lanes without a contact, phantoms
@@ -370,26 +367,20 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   const Triple<Pack> torque_i = only(hold, multiply_add(twist, touch.arm_i, f.rolling.on_i) * weight);
   const Triple<Pack> torque_j = only(hold, multiply_add(twist, touch.arm_j, f.rolling.on_j) * weight);
   largest_overlap = larger(largest_overlap, only(hold, touch.overlap * lanes.inverse_smaller_radius));
-  const auto first = in_sheet(block.first, out.begin);
   for_each_row({force.x, force.y, force.z, pressed, torque_i.x, torque_i.y, torque_i.z, zero},
-               [&](std::size_t k, const auto& row) { add_row(out.sheet[first[lane + k]], row); });
+               [&](std::size_t k, const auto& row) { add_row(out.of(block.first[lane + k]), row); });
   const std::array<Pack, 8> opposite{-force.x, -force.y, -force.z, pressed, torque_j.x, torque_j.y, torque_j.z, zero};
   if (crosses) {
     ForceRow* const to = &pairs.crossing[pairs.kind[number].crossing + lane];
     for_each_row(opposite, [&](std::size_t k, const auto& row) { store_row(to[k], row); });
   } else {
-    const auto second = in_sheet(block.second, out.begin);
-    for_each_row(opposite, [&](std::size_t k, const auto& row) { add_row(out.sheet[second[lane + k]], row); });
+    for_each_row(opposite, [&](std::size_t k, const auto& row) { add_row(out.of(block.second[lane + k]), row); });
   }
 
   if constexpr (Keep)
     book(law, touch, c, f, hold, touched, lanes.motion, false, nothing(), Pack(steps * in.step_length), pack_width,
          [&](std::size_t k) -> LastForces& { return pairs.last[first_lane + k]; }, sums);
-  if (in.record)
-    for (std::size_t k = 0; k < pack_width; ++k)
-      if (hold[k])
-        chunk.recorded.push_back({std::uint32_t(first_lane + k), f.tangential.sliding[k], lane_of(tangential, k), f.normal.elastic[k],
-                            f.damping[k]});
+  if (in.record) record(chunk, first_lane, hold, f.tangential.sliding, tangential, f.normal.elastic, f.damping);
   return any_of(hold);
 }
 
@@ -878,8 +869,8 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
     for (std::size_t turn = 0; turn < threads; ++turn) {
       Share& share = shares[(me + turn) % threads];
       for (std::size_t k = share.next++; k < share.end; k = share.next++) {
-        const std::uint32_t number = in.due_chunks[k], begin = std::uint32_t(number * chunk_rows);
-        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, ChunkOutput{*sheet, begin, out.asked});
+        const std::uint32_t number = in.due_chunks[k];
+        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, ChunkOutput{*sheet, out.asked});
         std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
         if (ready(k)) {
           progress[k].store(Progress::taken, std::memory_order_relaxed);

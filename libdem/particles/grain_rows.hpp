@@ -46,7 +46,7 @@ inline GrainRow phantom() {
   return row;
 }
 
-// What acts on the grains of a chunk, and on its phantom.
-using ForceSheet = std::array<ForceRow, chunk_rows + 1>;
+// What acts on the grains of a chunk.
+using ForceSheet = std::array<ForceRow, chunk_rows>;
 
 }  // namespace dem
