@@ -218,7 +218,8 @@ void add_demand(const ForceInput& in, const LevelScale& scale, double jolt, cons
 
 // The second grains of blocks that cross to other chunks hear of it in add_crossing().
 void ask(const Block& block, std::uint8_t level, bool crosses, const ChunkOutput& out) {
-  const auto ask_one = [&](std::uint32_t i) { out.asked[i] = std::min(out.asked[i], level); };
+  std::uint8_t* const asked = out.asked.data();  // else read anew after every byte, which may be any
+  const auto ask_one = [&](std::uint32_t i) { asked[i] = std::min(asked[i], level); };
   for (std::size_t k = 0; k < PairContacts::width; ++k) ask_one(block.first[k]);
   if (crosses) return;
   for (std::size_t k = 0; k < PairContacts::width; ++k) ask_one(block.second[k]);

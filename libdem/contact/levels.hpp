@@ -44,17 +44,17 @@ struct LevelScale {
 };
 
 inline LevelScale level_scale(const PairConstants<double>& c, const Resolution& r) {
-  const double relative = r.accuracy / r.step;  // 1/s
+  const double relative = r.accuracy / r.step, relative2 = relative * relative;  // 1/s
   const double mass = c.root_mass * c.root_mass;
-  const double rest = 2 * c.effective_modulus / mass / (4 * relative * relative);
+  const double rest = 2 * c.effective_modulus / mass / (4 * relative2);
   const double stiffness = 16 * c.effective_modulus * std::sqrt(c.effective_radius) / (15 * mass);
-  return {float(1 / rest), float(std::pow(relative, 5) / (std::pow(15.0 / 8, 2.5) * stiffness * stiffness))};
+  return {float(1 / rest), float(relative2 * relative2 * relative / (std::pow(15.0 / 8, 2.5) * stiffness * stiffness))};
 }
 
 // Resolved with omega h at most `share` of what (1) and (2) allow?
 inline bool resolved(std::uint8_t level, const LevelScale& scale, double radius, double speed, double share) {
-  const double h = stride(level), s2 = share * share;
-  return radius * h * h <= s2 * scale.radius && speed * h * h * h * h * h <= s2 * s2 * share * scale.speed;
+  const double h = stride(level), h2 = h * h, s2 = share * share;
+  return radius * h2 <= s2 * scale.radius && speed * (h2 * h2 * h) <= s2 * s2 * share * scale.speed;
 }
 
 // What a contact's level must resolve.
