@@ -308,7 +308,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   const LaneMotion motion{{vx_i - vx_j, vy_i - vy_j, vz_i - vz_j}, {spin_i[0], spin_i[1], spin_i[2]}, {spin_j[0], spin_j[1], spin_j[2]}};
   Triple<Pack> turning_i = motion.spin_i, turning_j = motion.spin_j, centres = motion.centres;
   Triple<Pack> arriving{arrival_i[0] - arrival_j[0], arrival_i[1] - arrival_j[1], arrival_i[2] - arrival_j[2]};
-  if (steps > 1)
+  if (steps > 1)  // else no grain can have moved more than once, and late() is 0
     if (const Pack late_i = late(steps, arrival_i[3]), late_j = late(steps, arrival_j[3]); any_of(late_i + late_j > Pack(0.0))) {
       const auto spun_i = load_quads([&](std::size_t k) { return in.spun[block.first[lane + k]].data(); });
       const auto spun_j = load_quads([&](std::size_t k) { return in.spun[block.second[lane + k]].data(); });

@@ -36,7 +36,7 @@ inline Pack absolute(const Pack& a) { return std::experimental::abs(a); }
 inline double larger(double a, double b) { return a > b ? a : b; }
 inline double smaller(double a, double b) { return a < b ? a : b; }
 #if defined(__AVX512F__)
-// The same in one operation, for numbers of which one is not one too.
+// The same in one operation: its second operand, too, where one is NaN or both are zero.
 inline Pack larger(const Pack& a, const Pack& b) { return Pack(_mm512_max_pd(static_cast<__m512d>(a), static_cast<__m512d>(b))); }
 inline Pack smaller(const Pack& a, const Pack& b) { return Pack(_mm512_min_pd(static_cast<__m512d>(a), static_cast<__m512d>(b))); }
 #else
