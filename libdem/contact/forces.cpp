@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -829,17 +830,39 @@ void wait_until(Condition condition) {
 
 bool pending(PairContacts::Chunk& chunk) { return std::atomic_ref(chunk.pending).load(std::memory_order_acquire) != 0; }
 
-// Due chunks that one thread begins with: neighbours in space, so that it finds in its own caches what pairs that cross chunks share. Who
-// has none left takes from the others'.
-struct Share {
-  alignas(64) std::atomic<std::size_t> next;
-  std::size_t end;
+// Due chunks that one thread begins with, rows of ForceInput::due_chunks: neighbours in space, so that it finds in its own caches what pairs
+// that cross chunks share, and the same at every step, so that it finds there what it wrote. It takes them from the first on; others, when
+// they have none left, from the last on.
+class Share {
+ public:
+  void assign(std::uint32_t begin, std::uint32_t end) { left_.store(pack(begin, end), std::memory_order_relaxed); }
+  std::optional<std::uint32_t> take_first() {
+    return take([](std::uint32_t& begin, std::uint32_t&) { return begin++; });
+  }
+  std::optional<std::uint32_t> take_last() {
+    return take([](std::uint32_t&, std::uint32_t& end) { return --end; });
+  }
+
+ private:
+  static std::uint64_t pack(std::uint32_t begin, std::uint32_t end) { return std::uint64_t{end} << 32 | begin; }
+  template <class Which>
+  std::optional<std::uint32_t> take(Which which) {
+    std::uint64_t seen = left_.load(std::memory_order_relaxed);
+    while (true) {
+      std::uint32_t begin = std::uint32_t(seen), end = std::uint32_t(seen >> 32);
+      if (begin == end) return std::nullopt;
+      const std::uint32_t taken = which(begin, end);
+      if (left_.compare_exchange_weak(seen, pack(begin, end), std::memory_order_relaxed)) return taken;
+    }
+  }
+  alignas(64) std::atomic<std::uint64_t> left_;
 };
 
 enum class Progress : std::uint8_t { to_evaluate, waiting, taken };  // of a chunk; taken by whoever finishes it
 
 // Each thread takes the next chunk of its share, evaluates it and finishes it. If chunks that send forces to it are still to be evaluated,
-// it keeps its sheet, and when none is left to take, all finish together what has waited, whoever evaluated it.
+// it keeps its sheet, and when none is left to take, all finish together what has waited, each what it has evaluated first: its caches hold
+// the grains.
 template <class Law, bool Keep>
 double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out,
                     const FinishChunk& finish) {
@@ -851,10 +874,11 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
   std::vector<std::unique_ptr<ForceSheet>> kept(count);  // of chunks that wait
   out.sheets.prepare(threads);
   std::atomic<std::size_t> finished = 0;
-  for (std::size_t t = 0; t < threads; ++t) {
-    shares[t].next = count * t / threads;
-    shares[t].end = count * (t + 1) / threads;
-  }
+  const auto row_of = [&](std::size_t thread) {
+    const std::size_t chunk = pairs.chunk.size() * thread / threads;
+    return std::uint32_t(std::ranges::lower_bound(in.due_chunks, chunk) - in.due_chunks.begin());
+  };
+  for (std::size_t t = 0; t < threads; ++t) shares[t].assign(row_of(t), row_of(t + 1));
 #pragma omp parallel num_threads(int(threads))
   {
     const std::size_t me = std::size_t(omp_get_thread_num());
@@ -867,9 +891,11 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
       ++finished;
     };
     std::unique_ptr<ForceSheet>& sheet = out.sheets.of_thread(me);
+    std::vector<std::uint32_t> waiting;  // of those that I have evaluated
     for (std::size_t turn = 0; turn < threads; ++turn) {
       Share& share = shares[(me + turn) % threads];
-      for (std::size_t k = share.next++; k < share.end; k = share.next++) {
+      while (const std::optional<std::uint32_t> taken = turn == 0 ? share.take_first() : share.take_last()) {
+        const std::uint32_t k = *taken;
         const std::uint32_t number = in.due_chunks[k];
         evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, ChunkOutput{*sheet, out.asked});
         std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
@@ -877,6 +903,7 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
           progress[k].store(Progress::taken, std::memory_order_relaxed);
           finish_with(k, *sheet);
         } else {
+          waiting.push_back(k);
           kept[k] = std::exchange(sheet, out.sheets.take());
           progress[k].store(Progress::waiting, std::memory_order_release);
         }
@@ -884,13 +911,17 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
     }
     // Awake until all is done, as at the end of the region OpenMP would soon put the thread to sleep, and waking it takes longer than others
     // need.
+    const auto finish_if_ready = [&](std::size_t k) {
+      Progress as = Progress::waiting;
+      if (progress[k].load(std::memory_order_relaxed) != as || !ready(k) ||
+          !progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire))
+        return;
+      finish_with(k, *kept[k]);
+      out.sheets.give_back(std::move(kept[k]));
+    };
     wait_until([&] {
-      for (std::size_t k = 0; k < count; ++k)
-        if (Progress as = Progress::waiting; progress[k].load(std::memory_order_relaxed) == as && ready(k) &&
-                                             progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire)) {
-          finish_with(k, *kept[k]);
-          out.sheets.give_back(std::move(kept[k]));
-        }
+      for (const std::uint32_t k : waiting) finish_if_ready(k);
+      for (std::size_t k = 0; k < count; ++k) finish_if_ready(k);
       return finished == count;
     });
   }

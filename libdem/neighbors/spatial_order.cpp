@@ -1,37 +1,81 @@
 #include "libdem/neighbors/spatial_order.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <utility>
+#include <array>
+#include <numeric>
+#include <span>
 
 namespace dem {
 namespace {
 
-// The lowest 21 bits, each followed by two zeros.
-std::uint64_t spread(std::uint64_t bits) {
-  bits &= 0x1fffff;
-  bits = (bits | bits << 32) & 0x1f00000000ffff;
-  bits = (bits | bits << 16) & 0x1f0000ff0000ff;
-  bits = (bits | bits << 8) & 0x100f00f00f00f00f;
-  bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
-  return (bits | bits << 2) & 0x1249249249249249;
+constexpr std::size_t smallest_part = 4;  // whose order matters no more
+
+struct Grain {
+  Vec3 place;
+  std::uint32_t row;
+};
+
+// Which end of an axis comes first: not decided before the first cut across it, then for each side of that cut the end that is further
+// from it.
+enum class First : std::uint8_t { undecided, low, high };
+using Directions = std::array<First, 3>;
+
+// By one coordinate, from its low end or its high one, then by the others, then by row.
+struct Along {
+  int axis;
+  bool from_high;
+  bool operator()(const Grain& a, const Grain& b) const {
+    for (int k = 0; k < 3; ++k)
+      if (const int x = (axis + k) % 3; a.place[x] != b.place[x]) return (a.place[x] < b.place[x]) != from_high;
+    return a.row < b.row;
+  }
+};
+
+int longest_axis(std::span<const Grain> grains) {
+  Vec3 low = grains.front().place, high = low;
+  for (const Grain& grain : grains) {
+    low = low.cwiseMin(grain.place);
+    high = high.cwiseMax(grain.place);
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  return axis;
+}
+
+// How many come before the cut: whole groups as long as there are several.
+std::size_t first_part(std::size_t count, std::size_t group) {
+  if (count <= group) return count / 2;
+  const std::size_t groups = (count + group - 1) / group;
+  return (groups + 1) / 2 * group;
+}
+
+void put_in_order(std::span<Grain> grains, std::size_t group, Directions first) {
+  const int axis = longest_axis(grains);
+  const First direction = first[std::size_t(axis)];
+  const Along along{axis, direction == First::high};
+  if (grains.size() <= smallest_part) {
+    std::sort(grains.begin(), grains.end(), along);
+    return;
+  }
+  const std::size_t cut = first_part(grains.size(), group);
+  std::nth_element(grains.begin(), grains.begin() + std::ptrdiff_t(cut), grains.end(), along);
+  Directions before = first, behind = first;
+  if (direction == First::undecided) {
+    before[std::size_t(axis)] = First::low;
+    behind[std::size_t(axis)] = First::high;
+  }
+  put_in_order(grains.first(cut), group, before);
+  put_in_order(grains.subspan(cut), group, behind);
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> spatial_order(const std::vector<Vec3>& position, double edge) {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-  for (const Vec3& x : position) low = low.cwiseMin(x);
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> key(position.size());
-  for (std::size_t i = 0; i < position.size(); ++i) {
-    const Vec3 cell = ((position[i] - low) / edge).cwiseMin(double((1 << 21) - 1));
-    key[i] = {
-        spread(std::uint64_t(cell.x())) | spread(std::uint64_t(cell.y())) << 1 | spread(std::uint64_t(cell.z())) << 2,
-        std::uint32_t(i)};
-  }
-  std::sort(key.begin(), key.end());
+std::vector<std::uint32_t> spatial_order(const std::vector<Vec3>& position, std::size_t group) {
+  std::vector<Grain> grains(position.size());
+  for (std::size_t i = 0; i < grains.size(); ++i) grains[i] = {position[i], std::uint32_t(i)};
+  if (!grains.empty()) put_in_order(grains, group, {});
   std::vector<std::uint32_t> order(position.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = key[i].second;
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = grains[i].row;
   return order;
 }
 

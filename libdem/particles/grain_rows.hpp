@@ -35,7 +35,7 @@ struct alignas(64) ForceRow {
 
 // Rows are handled in chunks of so many. What a chunk's contacts do to its own grains is summed by whoever handles the chunk, in
 // a fixed order, so that sums do not depend on the number of threads. Behind the last grain stands one phantom per chunk,
-// infinitely far away in effect: what fills blocks of contacts up. In the order of space a chunk is a cube, 8 grains wide: pairs that
+// infinitely far away in effect: what fills blocks of contacts up. In the order of space a chunk is a box, about 8 grains wide: pairs that
 // cross chunks cost more than others.
 inline constexpr std::size_t chunk_rows = 512;
 inline std::size_t chunks_of(std::size_t grains) { return (grains + chunk_rows - 1) / chunk_rows; }

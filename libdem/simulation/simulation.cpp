@@ -319,7 +319,7 @@ struct Simulation::Engine {
   // Lists of what may touch around the present positions, the grains laid out anew. `far`: travelled(), or empty.
   void build_lists(const Memory& memory, const std::vector<double>& far) {
     const double little = too_little_left();
-    lay_out_rows(spatial_order(grains.caller.position, 2 * mean_radius));
+    lay_out_rows(spatial_order(grains.caller.position, chunk_rows));
     std::vector<double> far_of_rows(far.size());
     for (std::size_t r = 0; r < far.size(); ++r) far_of_rows[r] = far[grains.order[r]];
     const std::vector<double> reach = reaches(far_of_rows, size(), skin, std::max(thinnest_skin(), 2 * little));

@@ -9,6 +9,7 @@
 #include "libdem/contact/pair_constants.hpp"
 #include "libdem/neighbors/pair_list.hpp"
 #include "libdem/neighbors/spatial_order.hpp"
+#include "libdem/particles/grain_rows.hpp"
 #include "libdem/simulation/simulation.hpp"
 #include "tests/dem/grains.hpp"
 #include "tests/dem/pair_constants.hpp"
@@ -203,7 +204,7 @@ void order_and_list(benchmark::State& state) {
   omp_set_num_threads(1);
   const Particles grains = support::packed_cube(int(state.range(0)), 1e-6, 0, 1);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(spatial_order(grains.position, 2 * 0.4625e-3));
+    benchmark::DoNotOptimize(spatial_order(grains.position, chunk_rows));
     benchmark::DoNotOptimize(build_pair_list(grains.position, grains.radius, 0.1 * 0.4625e-3));
   }
   state.counters["grains/s"] = benchmark::Counter(double(grains.size()), benchmark::Counter::kIsIterationInvariantRate);
