@@ -200,6 +200,7 @@ void write_state(jam::h5::File& f, const dem::State& s) {
       f.set_attribute("/state/layout/levels", "foresight", layout.foresight);
       write_arrays(f, "/state/layout/levels/", layout, level_arrays);
       f.write("/state/layout/levels/block_quiet", layout.block_quiet, "1", "steps for which no contact forms in a block that is apart and awake");
+      f.write("/state/layout/levels/wall_quiet", layout.wall_quiet, "1", "likewise of a grain near a wall");
     }
   }
   const dem::State::Ledger& l = s.ledger;
@@ -240,8 +241,11 @@ dem::State read_state(const jam::h5::File& f) {
       layout.foresight = f.attribute<double>("/state/layout/levels", "foresight");
       read_arrays(f, "/state/layout/levels/", layout, level_arrays);
       // Files of before have none: then each is looked at.
-      const char* const quiet = "/state/layout/levels/block_quiet";
-      layout.block_quiet = f.exists(quiet) ? f.read<std::uint32_t>(quiet) : std::vector<std::uint32_t>(layout.block_level.size(), 0);
+      const auto quiet = [&](const std::string& path, std::size_t count) {
+        return f.exists(path) ? f.read<std::uint32_t>(path) : std::vector<std::uint32_t>(count, 0);
+      };
+      layout.block_quiet = quiet("/state/layout/levels/block_quiet", layout.block_level.size());
+      layout.wall_quiet = quiet("/state/layout/levels/wall_quiet", layout.wall_level.size());
     }
   }
   if (!f.exists("/state/ledger")) return s;

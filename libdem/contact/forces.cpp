@@ -170,6 +170,12 @@ bool all_due(const ForceInput& in) { return in.due == in.highest; }
 
 std::uint32_t steps_since_all_due(const ForceInput& in) { return std::uint32_t(in.step & ((std::uint64_t{1} << in.highest) - 1)); }
 
+// For what is apart and awake: whether no contact forms before this step, and Activity::quiet_until if none does for so many seconds.
+bool quiet(const ForceInput& in, const Activity& activity) { return !all_due(in) && steps_since_all_due(in) < activity.quiet_until; }
+std::uint32_t quiet_until(const ForceInput& in, double earliest) {
+  return std::uint32_t(std::min(steps_since_all_due(in) + cautious * earliest / in.step_length, stride(in.highest)));
+}
+
 // s, by how much springs advance in a contact of this level.
 double advance_of(const ForceInput& in, std::uint8_t level) { return in.look ? 0 : in.step_length * stride(level); }
 
@@ -448,7 +454,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
         activity.level = in.highest;
       } else if (activity.level > in.due) {
         continue;
-      } else if (!all_due(in) && steps_since_all_due(in) < activity.quiet_until) {
+      } else if (quiet(in, activity)) {
         ask(pairs.block[b], activity.level, crosses, out);
         continue;
       }
@@ -458,7 +464,7 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
         activity.wake = in.odometer + cautious * approach.gap;
         if (!activity.asleep && levels_in_use(in)) {
           choose_level(in, approach.finest, pairs.kind[b].scale, activity, approach.demand);
-          activity.quiet_until = std::uint32_t(std::min(steps_since_all_due(in) + cautious * approach.earliest / in.step_length, stride(in.highest)));
+          activity.quiet_until = quiet_until(in, approach.earliest);
           ask(pairs.block[b], activity.level, crosses, out);
         }
         continue;
@@ -685,11 +691,15 @@ double normal_speed(const GrainRow& grain, const WallPose& pose, const WallTouch
   return std::abs((velocity - pose.velocity - pose.angular_velocity.cross(lever)).dot(touch.normal));
 }
 
+void ask(const WallCandidate& candidate, std::uint8_t level, const ChunkOutput& out) {
+  std::uint8_t& asked = out.asked[candidate.particle];
+  asked = std::min(asked, level);
+}
+
 void choose_level(const ForceInput& in, const WallCandidate& candidate, Activity& activity, const Demand& demand, const ChunkOutput& out) {
   const std::uint8_t cap = std::uint8_t(std::min<int>(in.highest, in.level[candidate.particle] + levels_above));
   activity.level = next_level(activity.level, in.due, cap, candidate.scale, demand);
-  std::uint8_t& asked = out.asked[candidate.particle];
-  asked = std::min(asked, activity.level);
+  ask(candidate, activity.level, out);
 }
 
 Demand demand_of(const WallContacts& walls, const WallCandidate& candidate, const GrainRow& grain, const WallPose& pose, double steps) {
@@ -737,6 +747,9 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       activity.level = in.highest;
     } else if (activity.level > in.due) {
       continue;
+    } else if (away && quiet(in, activity)) {
+      ask(walls.candidate[q], activity.level, out);
+      continue;
     }
     if (q + 2 < chunk.end && walls.activity[q + 2].acts && walls.activity[q + 2].level <= in.due)
       prefetch(in, walls, walls.candidate[q + 2]);
@@ -758,7 +771,12 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
       activity.asleep = gap > in.foresight;
       if (gap > 0) {
         activity.wake = in.odometer + cautious * gap;
-        if (!activity.asleep && levels_in_use(in)) choose_level(in, candidate, activity, {0, speed, speed}, out);
+        if (!activity.asleep && levels_in_use(in)) {
+          choose_level(in, candidate, activity, {0, speed, speed}, out);
+          // What is out of sight is too far to be touched before all levels are due again.
+          const double earliest = sight - reach > in.foresight ? gap / (speed + in.jolt[candidate.particle / chunk_rows]) : 0;
+          activity.quiet_until = quiet_until(in, earliest);
+        }
         continue;
       }
       std::erase_if(touches, [&](const WallTouch& touch) { return touch.distance > reach; });
@@ -774,6 +792,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
         book_end(law, ended, last, constants_of(in, candidate, ended), grain, advance_of(in, before), chunk.ledger);
     });
     activity.acts = candidate.size > 0;
+    activity.quiet_until = 0;
     if (!activity.acts) activity.wake = in.odometer;
     const double waited = woken ? 1 : stride(before);
     double steps = 1;

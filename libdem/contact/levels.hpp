@@ -43,12 +43,16 @@ struct LevelScale {
   float speed = 0;   // m/s
 };
 
-inline LevelScale level_scale(const PairConstants<double>& c, const Resolution& r) {
+// Of a pack the smallest of its lanes'.
+template <class Real>
+LevelScale level_scale(const PairConstants<Real>& c, const Resolution& r) {
   const double relative = r.accuracy / r.step, relative2 = relative * relative;  // 1/s
-  const double mass = c.root_mass * c.root_mass;
-  const double rest = 2 * c.effective_modulus / mass / (4 * relative2);
-  const double stiffness = 16 * c.effective_modulus * std::sqrt(c.effective_radius) / (15 * mass);
-  return {float(1 / rest), float(relative2 * relative2 * relative / (std::pow(15.0 / 8, 2.5) * stiffness * stiffness))};
+  const double ratio = std::pow(15.0 / 8, 2.5);
+  const Real mass = c.root_mass * c.root_mass;
+  const Real rest = Real(4 * relative2) * mass / (Real(2.0) * c.effective_modulus);
+  const Real stiffness = Real(16.0) * c.effective_modulus * square_root(c.effective_radius) / (Real(15.0) * mass);
+  const Real speed = Real(relative2 * relative2 * relative / ratio) / (stiffness * stiffness);
+  return {float(least_of(rest)), float(least_of(speed))};
 }
 
 // Resolved with omega h at most `share` of what (1) and (2) allow?

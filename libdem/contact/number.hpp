@@ -44,6 +44,9 @@ inline Pack larger(const Pack& a, const Pack& b) { return select(a > b, a, b); }
 inline Pack smaller(const Pack& a, const Pack& b) { return select(a < b, a, b); }
 #endif
 
+inline double least_of(double a) { return a; }
+inline double least_of(const Pack& a) { return std::experimental::hmin(a); }
+
 template <class Real>
 using Mask = decltype(Real() < Real());
 

@@ -1,6 +1,7 @@
 #include "libdem/contact/pair_blocks.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 namespace dem {
@@ -27,6 +28,11 @@ bool operator<(const Pair& a, const Pair& b) {
   if (a.gap != b.gap) return a.gap < b.gap;
   return std::tie(a.i, a.j) < std::tie(b.i, b.j);
 }
+
+// Where blocks keep sqrt(m*).
+constexpr std::size_t root_mass_column = std::size_t(
+    std::ranges::find(contact_constants<double>, &PairConstants<double>::root_mass) - contact_constants<double>.begin());
+static_assert(root_mass_column < constants_per_contact);
 
 // In the order of the blocks: by crossing, pair of materials, whether they touch, level.
 std::uint32_t kind_of(bool crosses, std::uint32_t material_pair, const std::optional<std::uint8_t>& level) {
@@ -87,6 +93,28 @@ bool fit(const Lanes& lanes, const GrainTable& grains) {
   return true;
 }
 
+LevelScale scale_of(const PairContacts& pairs, std::size_t number, const GrainTable& grains, const MaterialTable& materials,
+                    const Resolution& resolution) {
+  const PairContacts::Block& block = pairs.block[number];
+  const PairConstants<double>& kind = materials.pair[pairs.kind[number].material_pair];
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  LevelScale least{infinity, infinity};
+  for (std::size_t lane = 0; lane < width; lane += pack_width) {
+    const auto radius = [&](auto k, bool second) {
+      const std::uint32_t i = block.first[lane + k], j = block.second[lane + k];
+      return grains.rows[second && j < grains.size() ? j : i].radius();
+    };
+    const Pack radius_i([&](auto k) { return radius(k, false); }), radius_j([&](auto k) { return radius(k, true); });
+    PairConstants<Pack> c;
+    c.effective_modulus = kind.effective_modulus;
+    c.effective_radius = harmonic(radius_i, radius_j);
+    c.root_mass = Pack([&](auto k) { return (block.constant[root_mass_column])[lane + k]; });
+    const LevelScale scale = level_scale(c, resolution);
+    least = {std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
+  }
+  return least;
+}
+
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
                                 const Resolution& resolution, bool rolling_spring, bool keep_ledger, PairContacts pairs) {
   const std::size_t blocks = lanes.size() / width, chunks = chunks_of(grains.size());
@@ -127,10 +155,8 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
       block.second[k] = j;
       const PairConstants<double> c = pair_constants(materials.pair[kind], body(i), body(j < grains.size() ? j : i));
       for (std::size_t m = 0; m < constants_per_contact; ++m) block.constant[m][k] = c.*contact_constants<double>[m];
-      const LevelScale scale = level_scale(c, resolution);
-      LevelScale& least = pairs.kind[b].scale;
-      least = k == 0 ? scale : LevelScale{std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
     }
+    pairs.kind[b].scale = scale_of(pairs, b, grains, materials, resolution);
   }
   connect_chunks(pairs, grains.size());
   return pairs;

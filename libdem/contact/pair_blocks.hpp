@@ -38,6 +38,10 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
 PairConstants<double> constants_of(const PairContacts& pairs, std::size_t lane, const LargeArray<GrainRow>& rows, std::size_t grains,
                                    const MaterialTable& materials);
 
+// What level 0 resolves of a block, the smallest of its lanes.
+LevelScale scale_of(const PairContacts& pairs, std::size_t block, const GrainTable& grains, const MaterialTable& materials,
+                    const Resolution& resolution);
+
 // Fills in, from the pairs in blocks that cross to other chunks, where their second grains find what acts on them.
 void connect_chunks(PairContacts& pairs, std::size_t grains);
 

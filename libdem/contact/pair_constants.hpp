@@ -39,7 +39,15 @@ MaterialTable make_material_table(const std::vector<Material>& materials,
 struct BodyConstants {
   double radius, mass, inertia;
 };
-inline double harmonic(double a, double b) { return a * b / (a + b); }
+template <class Real>
+Real harmonic(const Real& a, const Real& b) { return a * b / (a + b); }
+
+// The cube root of x > 0, rounded once but for one number in some thousand: the library's in double precision and one of Newton's steps in
+// more digits, which is much less work than its root in more digits.
+inline double cube_root(double x) {
+  const long double root = std::cbrt(x), square = root * root;
+  return double(root - (square * root - x) / (3 * square));
+}
 
 // From the work of adhesion and the modulus what set_effective_radius() needs of them.
 inline void set_adhesion(PairConstants<double>& c) {
@@ -62,8 +70,8 @@ void set_effective_radius(PairConstants<Real>& c, const Real& effective_radius, 
   c.root_adhesion_radius = c.root_adhesion_scale * cube_root;
 }
 inline void set_effective_radius(PairConstants<double>& c, double effective_radius) {
-  const double cube_root = double(std::cbrt((long double)(effective_radius)));  // rounded once, likewise
-  set_effective_radius(c, effective_radius, cube_root, 1 / cube_root);
+  const double root = cube_root(effective_radius);
+  set_effective_radius(c, effective_radius, root, 1 / root);
 }
 
 // Two spheres.

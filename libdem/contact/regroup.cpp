@@ -57,16 +57,6 @@ struct Contents {
   }
 };
 
-LevelScale scale_of(const PairContacts& pairs, std::size_t number, const GrainTable& grains, const MaterialTable& materials,
-                    const Resolution& resolution) {
-  LevelScale least;
-  for (std::size_t k = 0; k < width; ++k) {
-    const LevelScale scale = level_scale(constants_of(pairs, width * number + k, grains.rows, grains.size(), materials), resolution);
-    least = k == 0 ? scale : LevelScale{std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
-  }
-  return least;
-}
-
 // Working space of one thread.
 struct Space {
   Contents old;

@@ -9,6 +9,7 @@ namespace dem {
 namespace {
 
 constexpr std::size_t smallest_part = 4;  // whose order matters no more
+constexpr std::size_t worth_a_task = 2000;  // grains
 
 struct Grain {
   Vec3 place;
@@ -64,8 +65,10 @@ void put_in_order(std::span<Grain> grains, std::size_t group, Directions first) 
     before[std::size_t(axis)] = First::low;
     behind[std::size_t(axis)] = First::high;
   }
-  put_in_order(grains.first(cut), group, before);
-  put_in_order(grains.subspan(cut), group, behind);
+  const std::span<Grain> one = grains.first(cut), other = grains.subspan(cut);
+#pragma omp task if (one.size() > worth_a_task)
+  put_in_order(one, group, before);
+  put_in_order(other, group, behind);
 }
 
 }  // namespace
@@ -73,6 +76,8 @@ void put_in_order(std::span<Grain> grains, std::size_t group, Directions first) 
 std::vector<std::uint32_t> spatial_order(const std::vector<Vec3>& position, std::size_t group) {
   std::vector<Grain> grains(position.size());
   for (std::size_t i = 0; i < grains.size(); ++i) grains[i] = {position[i], std::uint32_t(i)};
+#pragma omp parallel if (grains.size() > worth_a_task)
+#pragma omp single
   if (!grains.empty()) put_in_order(grains, group, {});
   std::vector<std::uint32_t> order(position.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = grains[i].row;

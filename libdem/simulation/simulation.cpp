@@ -312,6 +312,7 @@ struct Simulation::Engine {
   double travel(std::size_t r) const { return (grains.rows[r].place - grains.listed[r]).head<3>().norm(); }
   std::vector<double> travelled() const {
     std::vector<double> far(size());
+#pragma omp parallel for schedule(static)
     for (std::size_t r = 0; r < size(); ++r) far[grains.order[r]] = travel(r);
     return far;
   }
@@ -363,27 +364,25 @@ struct Simulation::Engine {
     const std::size_t blocks = pairs.block.size(), candidates = layout.wall_grain.size();
     if (layout.grain_level.size() != size() || layout.block_level.size() != blocks || layout.block_wake.size() != blocks ||
         layout.block_quiet.size() != blocks || layout.wall.size() != candidates || layout.wall_level.size() != candidates || layout.wall_wake.size() != candidates ||
-        layout.closing_jolt.size() != chunks_of(size()) ||
+        layout.wall_quiet.size() != candidates || layout.closing_jolt.size() != chunks_of(size()) ||
         !std::all_of(layout.block_level.begin(), layout.block_level.end(), known) ||
         !std::all_of(layout.wall_level.begin(), layout.wall_level.end(), known) ||
         !std::all_of(layout.grain_level.begin(), layout.grain_level.end(), known))
       throw CaseError("the stored state has levels that do not fit its contacts");
-    const auto restore = [&](Activity& activity, std::uint8_t level, double wake) {
+    const auto restore = [&](Activity& activity, std::uint8_t level, double wake, std::uint32_t quiet_until) {
       activity.asleep = level == State::Layout::asleep_level;
       activity.level = activity.asleep ? 0 : std::min(level, setup.levels);
       activity.wake = wake;
+      activity.quiet_until = quiet_until;
     };
     for (std::size_t r = 0; r < size(); ++r) grains.level[r] = std::min(layout.grain_level[r], setup.levels);
-    for (std::size_t b = 0; b < blocks; ++b) {
-      restore(pairs.activity[b], layout.block_level[b], layout.block_wake[b]);
-      pairs.activity[b].quiet_until = layout.block_quiet[b];
-    }
+    for (std::size_t b = 0; b < blocks; ++b) restore(pairs.activity[b], layout.block_level[b], layout.block_wake[b], layout.block_quiet[b]);
     std::map<std::pair<std::uint32_t, std::uint32_t>, Activity*> candidate;
     for (std::size_t q = 0; q < walls.candidate.size(); ++q)
       candidate[{walls.candidate[q].particle, walls.candidate[q].wall}] = &walls.activity[q];
     for (std::size_t k = 0; k < candidates; ++k) {
       const auto found = candidate.find({layout.wall_grain[k], layout.wall[k]});
-      if (found != candidate.end()) restore(*found->second, layout.wall_level[k], layout.wall_wake[k]);
+      if (found != candidate.end()) restore(*found->second, layout.wall_level[k], layout.wall_wake[k], layout.wall_quiet[k]);
     }
     foresight = layout.foresight;
     closing_jolt = layout.closing_jolt;
@@ -796,6 +795,7 @@ State Simulation::state() const {
       state.layout.wall.push_back(e.walls.candidate[q].wall);
       state.layout.wall_level.push_back(level_of(e.walls.activity[q]));
       state.layout.wall_wake.push_back(e.walls.activity[q].wake);
+      state.layout.wall_quiet.push_back(e.walls.activity[q].quiet_until);
     }
     state.layout.foresight = e.foresight;
     state.layout.closing_jolt = e.closing_jolt;

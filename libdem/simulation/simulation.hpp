@@ -99,6 +99,7 @@ struct State {
     std::vector<std::uint32_t> wall_grain, wall;  // [C] row of the run, wall
     std::vector<std::uint8_t> wall_level;   // [C]
     std::vector<double> wall_wake;          // [C] m
+    std::vector<std::uint32_t> wall_quiet;  // [C] steps
     double foresight = 0;                   // m, how far the odometer could come until all were due again
     std::vector<double> closing_jolt;       // [chunks] m/s, by how much speeds could change until then
     static constexpr std::uint8_t asleep_level = 255;

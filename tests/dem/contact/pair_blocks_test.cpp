@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
+#include <random>
 #include <set>
 
 #include "tests/dem/pair_scene.hpp"
@@ -71,16 +74,20 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
   const std::size_t n = 1500;
   const Scene s = random_scene(n, 7);
   const Lanes lanes = order_lanes(s.list, s.table(), 2, level);
-  const PairContacts pairs = make_pair_contacts(lanes, s.table(), s.materials, {.step = 1e-6}, true, true);
+  const Resolution resolution{.step = 1e-6};
+  const PairContacts pairs = make_pair_contacts(lanes, s.table(), s.materials, resolution, true, true);
   EXPECT_EQ(pairs.lanes(), lanes.size());
   EXPECT_EQ(pairs.last.size(), lanes.size());
   EXPECT_EQ(pairs.rolling.size(), pairs.block.size());
   std::map<std::uint32_t, std::uint32_t> crossing;  // row in `crossing`: second grain
   ASSERT_EQ(pairs.chunk.size(), chunks_of(n));
   for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
-    for (std::uint32_t b = pairs.chunk[c].begin; b < pairs.chunk[c].end; ++b)
+    for (std::uint32_t b = pairs.chunk[c].begin; b < pairs.chunk[c].end; ++b) {
+      LevelScale least{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
       for (std::uint32_t k = 0; k < PairContacts::width; ++k) {
         const auto [i, j] = lanes[PairContacts::width * b + k];
+        const LevelScale scale = level_scale(constants_of(pairs, PairContacts::width * b + k, s.rows, n, s.materials), resolution);
+        least = {std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
         ASSERT_EQ(pairs.block[b].first[k], i);
         ASSERT_EQ(pairs.block[b].second[k], j);
         ASSERT_EQ(i / chunk_rows, c);
@@ -97,6 +104,9 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
         for (std::size_t m = 0; m < constants_per_contact; ++m)
           EXPECT_EQ(pairs.block[b].constant[m][k], expected.*contact_constants<double>[m]);
       }
+      EXPECT_EQ(pairs.kind[b].scale.radius, least.radius);
+      EXPECT_EQ(pairs.kind[b].scale.speed, least.speed);
+    }
   // Every crossing is announced to the chunk of the second grain, once.
   std::map<std::uint32_t, std::uint32_t> announced;
   for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
@@ -106,6 +116,20 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
     }
   EXPECT_EQ(announced, crossing);
   EXPECT_GT(crossing.size(), 100u);
+}
+
+TEST(PairConstants, CubeRootsAreRoundedOnce) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> exponent(-60, 60);
+  long double worst = 0;
+  for (int round = 0; round < 100000; ++round) {
+    const double x = std::exp2(exponent(random)), root = cube_root(x);
+    const long double unit = std::ldexp(1.0L, std::ilogb(root) - 52);
+    worst = std::max(worst, std::abs(root - std::cbrt((long double)(x))) / unit);
+  }
+  // Half a unit in the last place, and what the digits beyond it may be wrong by.
+  EXPECT_LT(worst, 0.501L);
+  EXPECT_GT(worst, 0.499L);
 }
 
 }  // namespace

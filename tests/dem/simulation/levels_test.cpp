@@ -256,7 +256,7 @@ TEST(Levels, AnyNumberOfThreadsAndAnyRestartGiveTheSameBytes) {
   expect_same(ends[0], ends[1]);
   expect_same(ends[0], ends[2]);
   Simulation part(setup, fresh(support::grains_below_the_paddle()));
-  std::ptrdiff_t quiet = 0;
+  std::ptrdiff_t quiet = 0, quiet_at_walls = 0;
   for (const std::uint64_t steps : {16, 160, 2000, 1024, 16, 3200, 1584}) {
     part.advance(steps);
     const State::Layout before = part.state().layout;
@@ -267,9 +267,12 @@ TEST(Levels, AnyNumberOfThreadsAndAnyRestartGiveTheSameBytes) {
     EXPECT_EQ(before.block_level, after.block_level);
     EXPECT_EQ(before.block_wake, after.block_wake);
     EXPECT_EQ(before.block_quiet, after.block_quiet);
-    quiet += std::count_if(after.block_quiet.begin(), after.block_quiet.end(), [](std::uint32_t until) { return until > 0; });
+    const auto count_quiet = [](const std::vector<std::uint32_t>& until) { return std::ranges::count_if(until, [](std::uint32_t k) { return k > 0; }); };
+    quiet += count_quiet(after.block_quiet);
+    quiet_at_walls += count_quiet(after.wall_quiet);
   }
   EXPECT_GT(quiet, 10);
+  EXPECT_GT(quiet_at_walls, 10);
   expect_same(part.state(), ends[0]);
 }
 

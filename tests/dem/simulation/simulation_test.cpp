@@ -89,12 +89,12 @@ TEST(Simulation, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(Simulation, ListsMissNoContact) {
   omp_set_num_threads(1);
   for (const std::uint8_t levels : {0, 3}) {
-    dem::Setup setup = boxed(5.6e-3);
+    dem::Setup setup = boxed(7.5e-3);
     setup.levels = levels;
     setup.walls[0].motion.velocity = Vec3(2, 0, 0);
-    Simulation sim(setup, fresh(support::packed_cube(12, 1e-7, 0.0, 7)));
+    Simulation sim(setup, fresh(support::packed_cube(16, 1e-7, 0.0, 7)));
     std::size_t unequal = 0, most = 0;
-    for (int look = 0; look < 30; ++look) {
+    for (int look = 0; look < 20; ++look) {
       sim.advance(240);
       const State::Layout layout = sim.state().layout;
       unequal += *std::min_element(layout.reach.begin(), layout.reach.end()) < 0.5 * layout.skin;
