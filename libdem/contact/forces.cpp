@@ -879,9 +879,9 @@ class Share {
 
 enum class Progress : std::uint8_t { to_evaluate, waiting, taken };  // of a chunk; taken by whoever finishes it
 
-// Each thread takes the next chunk of its share, evaluates it and finishes it. If chunks that send forces to it are still to be evaluated,
-// it keeps its sheet, and when none is left to take, all finish together what has waited, each what it has evaluated first: its caches hold
-// the grains.
+// Each thread takes the next chunk of its share, evaluates it and finishes it. If chunks that send forces to it are still to be evaluated, it
+// keeps its sheet and looks again after each of the next. When none is left to take, all finish together what still waits, each first what it
+// has evaluated, whose grains its caches hold.
 template <class Law, bool Keep>
 double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, const ForceOutput& out,
                     const FinishChunk& finish) {
@@ -911,6 +911,17 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
     };
     std::unique_ptr<ForceSheet>& sheet = out.sheets.of_thread(me);
     std::vector<std::uint32_t> waiting;  // of those that I have evaluated
+    // True where it is finished, or being finished by another.
+    const auto finish_if_ready = [&](std::size_t k) {
+      Progress as = progress[k].load(std::memory_order_relaxed);
+      if (as != Progress::waiting) return as == Progress::taken;
+      if (!ready(k)) return false;
+      if (progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire)) {
+        finish_with(k, *kept[k]);
+        out.sheets.give_back(std::move(kept[k]));
+      }
+      return true;
+    };
     for (std::size_t turn = 0; turn < threads; ++turn) {
       Share& share = shares[(me + turn) % threads];
       while (const std::optional<std::uint32_t> taken = turn == 0 ? share.take_first() : share.take_last()) {
@@ -926,20 +937,13 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
           kept[k] = std::exchange(sheet, out.sheets.take());
           progress[k].store(Progress::waiting, std::memory_order_release);
         }
+        std::erase_if(waiting, finish_if_ready);
       }
     }
     // Awake until all is done, as at the end of the region OpenMP would soon put the thread to sleep, and waking it takes longer than others
     // need.
-    const auto finish_if_ready = [&](std::size_t k) {
-      Progress as = Progress::waiting;
-      if (progress[k].load(std::memory_order_relaxed) != as || !ready(k) ||
-          !progress[k].compare_exchange_strong(as, Progress::taken, std::memory_order_acquire))
-        return;
-      finish_with(k, *kept[k]);
-      out.sheets.give_back(std::move(kept[k]));
-    };
     wait_until([&] {
-      for (const std::uint32_t k : waiting) finish_if_ready(k);
+      std::erase_if(waiting, finish_if_ready);
       for (std::size_t k = 0; k < count; ++k) finish_if_ready(k);
       return finished == count;
     });
