@@ -149,7 +149,7 @@ void regroup(PairContacts& pairs, const GrainTable& grains, const MaterialTable&
 #pragma omp parallel reduction(|| : crossing_moved)
   {
     Space space;
-#pragma omp for schedule(dynamic, 1)
+#pragma omp for schedule(static)  // so that most chunks stay with the thread that evaluates them
     for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
       for_each_range(pairs, pairs.chunk[c], [&](const Range& range) {
         if (!find_order(pairs, range, grains, space)) return;
