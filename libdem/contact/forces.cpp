@@ -392,8 +392,8 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   return any_of(hold);
 }
 
-// How many blocks ahead they, and then the second grains of theirs, are asked of memory: what lies next to a block may not be due, so that
-// processors do not see by themselves what is read next.
+// So many blocks ahead a block that is due, and then the second grains of its pairs, are asked of memory. What lies next to a block may not
+// be due, so a processor does not see by itself what is read next.
 constexpr std::uint32_t blocks_ahead = 6, grains_ahead = 2;
 
 inline void prefetch(const Block& block) {

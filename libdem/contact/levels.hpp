@@ -49,10 +49,10 @@ LevelScale level_scale(const PairConstants<Real>& c, const Resolution& r) {
   const double relative = r.accuracy / r.step, relative2 = relative * relative;  // 1/s
   const double ratio = std::pow(15.0 / 8, 2.5);
   const Real mass = c.root_mass * c.root_mass;
-  const Real rest = Real(4 * relative2) * mass / (Real(2.0) * c.effective_modulus);
+  const Real radius = Real(4 * relative2) * mass / (Real(2.0) * c.effective_modulus);
   const Real stiffness = Real(16.0) * c.effective_modulus * square_root(c.effective_radius) / (Real(15.0) * mass);
   const Real speed = Real(relative2 * relative2 * relative / ratio) / (stiffness * stiffness);
-  return {float(least_of(rest)), float(least_of(speed))};
+  return {float(least_of(radius)), float(least_of(speed))};
 }
 
 // Resolved with omega h at most `share` of what (1) and (2) allow?

@@ -108,7 +108,7 @@ LevelScale scale_of(const PairContacts& pairs, std::size_t number, const GrainTa
     PairConstants<Pack> c;
     c.effective_modulus = kind.effective_modulus;
     c.effective_radius = harmonic(radius_i, radius_j);
-    c.root_mass = Pack([&](auto k) { return (block.constant[root_mass_column])[lane + k]; });
+    c.root_mass = Pack([&](auto k) { return block.constant[root_mass_column][lane + k]; });
     const LevelScale scale = level_scale(c, resolution);
     least = {std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
   }
