@@ -40,6 +40,10 @@ struct Activity {
   // Of one that does not act and is awake: steps after all levels were due last before which no contact forms, as was seen; until they are again.
   std::uint32_t quiet_until = 0;
   double wake = -std::numeric_limits<double>::infinity();
+
+  // The lowest due level at which it has to be looked at.
+  std::uint8_t due_from() const { return acts || !asleep ? level : when_all_are_due; }
+  static constexpr std::uint8_t when_all_are_due = 255;
 };
 
 // Pairs of grains that touch or may touch before the list is built again, in blocks of eight lanes. A pair keeps its lane until
@@ -63,6 +67,8 @@ struct PairContacts {
   };
   LargeArray<Block> block;
   std::vector<Activity> activity;             // [blocks]
+  // [blocks] Activity::due_from() or lower: found faster among bytes (due_list.hpp). Where all levels are due all are looked at.
+  std::vector<std::uint8_t> due_from;
   std::vector<Kind> kind;                     // [blocks]
   std::vector<std::uint64_t> birth_step;      // [lanes]
   std::vector<RollingSprings> rolling;        // [blocks] empty where the law has none
@@ -86,6 +92,7 @@ struct PairContacts {
     Evaluations evaluations;
     EndedContacts ended;
     std::vector<PairForce> recorded;  // by lane, of the last evaluation that recorded
+    std::vector<std::uint32_t> places;  // working space
   };
   std::vector<Chunk> chunk;
 
@@ -127,6 +134,7 @@ struct WallCandidate {
 struct WallContacts {
   std::vector<WallCandidate> candidate;  // sorted by chunk of the grain, wall, grain
   std::vector<Activity> activity;        // [candidates]
+  std::vector<std::uint8_t> due_from;    // [candidates] likewise
   std::vector<std::uint32_t> parts, near_parts;  // of one size
   std::vector<WallContact> contact;
   std::vector<LastForces> last;  // of each contact; empty where no ledger is kept
@@ -144,7 +152,8 @@ struct WallContacts {
     Evaluations evaluations;
     EndedContacts ended;
     bool overflow = false;
-    std::vector<WallTouch> touches;  // working space
+    std::vector<std::uint32_t> places;  // working space
+    std::vector<WallTouch> touches;
     std::vector<MeshTouch> scratch;
   };
   std::vector<Chunk> chunk;

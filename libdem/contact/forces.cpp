@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "libdem/contact/due_list.hpp"
 #include "libdem/contact/rows.hpp"
 #include "libdem/errors.hpp"
 
@@ -167,6 +168,9 @@ void book(const Law& law, const Touch<Pack>& touch, const PairConstants<Pack>& c
 
 bool levels_in_use(const ForceInput& in) { return in.highest > 0; }
 bool all_due(const ForceInput& in) { return in.due == in.highest; }
+
+// What is looked at is due from this level on, or a lower one.
+std::uint8_t due_from_at(const ForceInput& in) { return all_due(in) ? Activity::when_all_are_due : in.due; }
 
 std::uint32_t steps_since_all_due(const ForceInput& in) { return std::uint32_t(in.step & ((std::uint64_t{1} << in.highest) - 1)); }
 
@@ -452,19 +456,18 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
   Evaluations evaluations;
   chunk.ended = EndedContacts{};
   if (in.record) chunk.recorded.clear();
-  const auto due = [&](std::uint32_t b) { return b < chunk.end && pairs.activity[b].acts && pairs.activity[b].level <= in.due; };
-  for (std::uint32_t b = chunk.begin; b < chunk.end; ++b) {
+  const auto visit = [&](std::uint32_t b) {
     Activity& activity = pairs.activity[b];
     const bool crosses = b >= chunk.inner_end, woken = !activity.acts && activity.asleep;
     if (!activity.acts) {
       if (woken) {
-        if (!all_due(in) || in.odometer + in.foresight < activity.wake) continue;
+        if (!all_due(in) || in.odometer + in.foresight < activity.wake) return;
         activity.level = in.highest;
       } else if (activity.level > in.due) {
-        continue;
+        return;
       } else if (quiet(in, activity)) {
         ask(pairs.block[b], activity.level, crosses, out);
-        continue;
+        return;
       }
       const Approach approach = look_at(law, in, pairs, b, crosses);
       activity.asleep = approach.gap > 0 && !approach.soon;
@@ -475,17 +478,24 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
           activity.quiet_until = quiet_until(in, approach.earliest);
           ask(pairs.block[b], activity.level, crosses, out);
         }
-        continue;
+        return;
       }
     } else if (activity.level > in.due) {
-      continue;
+      return;
     }
-    if (due(b + blocks_ahead)) prefetch(pairs.block[b + blocks_ahead]);
-    if (due(b + grains_ahead)) prefetch_grains(in, pairs.block[b + grains_ahead]);
     evaluate_block<Law, Keep>(law, in, pairs, b, woken, crosses, out, largest_overlap, sums, chunk);
     activity.wake = in.odometer;
     activity.quiet_until = 0;
     evaluations += {1, std::uint64_t{1} << activity.level, 0, 0};
+  };
+  const std::span<const std::uint32_t> due =
+      list_due(std::span(pairs.due_from).subspan(chunk.begin, chunk.end - chunk.begin), due_from_at(in), chunk.begin, chunk.places);
+  const auto acts = [&](std::size_t n) { return n < due.size() && pairs.activity[due[n]].acts; };
+  for (std::size_t n = 0; n < due.size(); ++n) {
+    if (acts(n + blocks_ahead)) prefetch(pairs.block[due[n + blocks_ahead]]);
+    if (acts(n + grains_ahead)) prefetch_grains(in, pairs.block[due[n + grains_ahead]]);
+    visit(due[n]);
+    pairs.due_from[due[n]] = pairs.activity[due[n]].due_from();
   }
   chunk.largest_overlap = std::experimental::hmax(largest_overlap);
   chunk.ledger = sums;
@@ -748,20 +758,18 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
   chunk.evaluations = Evaluations{};
   chunk.ended = EndedContacts{};
   const auto block = [&] { evaluate_wall_block<Law, Keep>(law, in, slot, count, chunk, out, sums); };
-  for (std::uint32_t q = chunk.begin; q < chunk.end; ++q) {
+  const auto visit = [&](std::uint32_t q) {
     Activity& activity = walls.activity[q];
     const bool away = !activity.acts, woken = away && activity.asleep;
     if (woken) {
-      if (!all_due(in) || in.odometer + in.foresight < activity.wake) continue;
+      if (!all_due(in) || in.odometer + in.foresight < activity.wake) return;
       activity.level = in.highest;
     } else if (activity.level > in.due) {
-      continue;
+      return;
     } else if (away && quiet(in, activity)) {
       ask(walls.candidate[q], activity.level, out);
-      continue;
+      return;
     }
-    if (q + 2 < chunk.end && walls.activity[q + 2].acts && walls.activity[q + 2].level <= in.due)
-      prefetch(in, walls, walls.candidate[q + 2]);
     WallCandidate& candidate = walls.candidate[q];
     const GrainRow& grain = in.grains[candidate.particle];
     // Where nothing is near, look as far as the list does, to know for how long.
@@ -786,7 +794,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
           const double earliest = sight - reach > in.foresight ? gap / (speed + in.jolt[candidate.particle / chunk_rows]) : 0;
           activity.quiet_until = quiet_until(in, earliest);
         }
-        continue;
+        return;
       }
       std::erase_if(touches, [&](const WallTouch& touch) { return touch.distance > reach; });
     }
@@ -818,6 +826,13 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
         count = 0;
       }
     }
+  };
+  const std::span<const std::uint32_t> due =
+      list_due(std::span(walls.due_from).subspan(chunk.begin, chunk.end - chunk.begin), due_from_at(in), chunk.begin, chunk.places);
+  for (std::size_t n = 0; n < due.size(); ++n) {
+    if (n + 2 < due.size() && walls.activity[due[n + 2]].acts) prefetch(in, walls, walls.candidate[due[n + 2]]);
+    visit(due[n]);
+    walls.due_from[due[n]] = walls.activity[due[n]].due_from();
   }
   if (count > 0) {
     for (std::size_t k = count; k < pack_width; ++k) slot[k] = slot[0];

@@ -27,9 +27,9 @@ struct Resolution {
   std::uint8_t highest = 0;             // level; 0: everything at every step
 };
 
-// Steps between evaluations.
-inline double stride(std::uint8_t level) { return double(1U << level); }
-// 2^-level, without a division: the exponent's bits of a double.
+// Steps between evaluations, 2^level: the exponent's bits of a double.
+inline double stride(std::uint8_t level) { return std::bit_cast<double>((1023 + std::uint64_t{level}) << 52); }
+// 2^-level
 inline double per_stride(std::uint8_t level) { return std::bit_cast<double>((1023 - std::uint64_t{level}) << 52); }
 
 // The highest level that is due at this step.

@@ -124,6 +124,7 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
   }
   pairs.block.resize(blocks);
   pairs.activity.assign(blocks, {});
+  pairs.due_from.assign(blocks, 0);
   pairs.kind.assign(blocks, {});
   pairs.birth_step.assign(lanes.size(), 0);
   pairs.rolling.assign(rolling_spring ? blocks : 0, {});

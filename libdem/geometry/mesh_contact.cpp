@@ -20,20 +20,21 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 constexpr double tie_fraction = 1e-12;
 constexpr double smallest_merge_angle = 1e-6;  // rad
 
-struct Face {
+struct alignas(64) Face {
   Vec3 corner, normal;
   std::array<Vec3, 3> inward;  // unit, in the plane, perpendicular to side k, from side k into the triangle
   double side1_offset;         // (corner 1 - corner 0) . inward[1]; sides 0 and 2 pass through corner 0
   // The edges and vertices that are tested with this face: each once, with the smallest of its faces.
   std::array<std::uint32_t, 3> edges, vertices;
 
-  double side_distance(const Vec3& from_corner) const {  // m, to the nearest side, < 0 beyond it
-    return std::min({inward[0].dot(from_corner), inward[1].dot(from_corner) - side1_offset, inward[2].dot(from_corner)});
+  // m, to the line of each side, < 0 beyond it.
+  std::array<double, 3> side_distances(const Vec3& from_corner) const {
+    return {inward[0].dot(from_corner), inward[1].dot(from_corner) - side1_offset, inward[2].dot(from_corner)};
   }
   // m^2; beyond a side the triangle is at least as far in its plane as the side's line is.
   double squared_distance_at_least(const Vec3& x) const {
     const Vec3 from_corner = x - corner;
-    const double height = normal.dot(from_corner), aside = std::min(side_distance(from_corner), 0.0);
+    const double height = normal.dot(from_corner), aside = std::min(std::ranges::min(side_distances(from_corner)), 0.0);
     return height * height + aside * aside;
   }
 };
@@ -61,6 +62,9 @@ struct MeshContactFinder::Impl {
   std::vector<Vertex> vertices;
   std::vector<Vec3> directions;  // unit, along the edges that leave a vertex
   double tie = 0;                // m
+  // m. No vertex of a face is nearest to what lies further than this from all of its sides: of two unit vectors along sides from the vertex one
+  // would have a product with the way from there to x of at least |x|^2/(2 sides), more than a tie.
+  double well_inside = 0;
   double merge_cosine = 1;
 
   Impl(TriangleMesh m, double merge_angle) : mesh(std::move(m)), tree(mesh) {
@@ -68,6 +72,9 @@ struct MeshContactFinder::Impl {
     for (const Vec3& p : mesh.vertices) tie = std::max(tie, tie_fraction * p.cwiseAbs().maxCoeff());
     build_faces();
     build_edges();
+    double longest = 0;
+    for (const Edge& edge : edges) longest = std::max(longest, edge.length);
+    well_inside = 2 * std::sqrt(2 * longest * tie) + 2 * tie;
     build_vertices();
   }
 
@@ -166,6 +173,48 @@ struct MeshContactFinder::Impl {
                    unit_to(from_vertex, distance, vertex.outward), distance});
   }
 
+  // Edges and vertices that are still to be tested: they are asked of memory when they are found, and tested when all are.
+  class ToTest {
+   public:
+    ToTest(const Impl& mesh, const Vec3& centre, double reach, std::vector<MeshTouch>& out)
+        : mesh_(mesh), centre_(centre), reach_(reach), out_(out) {}
+    void edge(std::uint32_t e, std::uint32_t facet) {
+      prefetch(&mesh_.edges[e], sizeof(Edge));
+      add({e, facet});
+    }
+    void vertex(std::uint32_t v) {
+      prefetch(&mesh_.vertices[v], sizeof(Vertex));
+      prefetch(&mesh_.mesh.vertices[v], sizeof(Vec3));
+      add({v, none});
+    }
+    void test() {
+      for (std::size_t k = 0; k < count_; ++k)
+        if (const auto [id, facet] = found_[k]; facet == none)
+          mesh_.touch_vertex(id, centre_, reach_, out_);
+        else
+          mesh_.touch_edge(id, facet, centre_, reach_, out_);
+      count_ = 0;
+    }
+
+   private:
+    struct Found {
+      std::uint32_t id, facet;  // of a vertex none
+    };
+    static void prefetch(const void* data, std::size_t bytes) {
+      for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(static_cast<const char*>(data) + byte);
+    }
+    void add(const Found& found) {
+      found_[count_++] = found;
+      if (count_ == found_.size()) test();
+    }
+    const Impl& mesh_;
+    const Vec3& centre_;
+    double reach_;
+    std::vector<MeshTouch>& out_;
+    std::array<Found, 32> found_;
+    std::size_t count_ = 0;
+  };
+
   // Keeps, nearest first, each touch whose normal is not within the merge angle of one kept before.
   void merge(std::vector<MeshTouch>& out) const {
     const auto nearness = [this](const MeshTouch& t) {
@@ -217,18 +266,31 @@ void MeshContactFinder::touches(const Vec3& centre, double reach, std::span<cons
   out.clear();
   const double tie = impl_->tie;
   for (const std::uint32_t f : candidates) {
+    const char* const face = reinterpret_cast<const char*>(&impl_->faces[f]);
+    __builtin_prefetch(face);
+    __builtin_prefetch(face + 64);
+  }
+  Impl::ToTest features(*impl_, centre, reach, out);
+  for (const std::uint32_t f : candidates) {
     const Face& face = impl_->faces[f];
     const Vec3 r = centre - face.corner;
     const double height = face.normal.dot(r);
     if (std::abs(height) > reach) continue;
-    const double nearest_side = face.side_distance(r);
+    const std::array<double, 3> side = face.side_distances(r);
+    const double nearest_side = std::ranges::min(side);
     if (nearest_side < -reach) continue;
     if (height >= 0 && nearest_side >= -tie) impl_->touch_face(f, centre, height, out);
-    for (const std::uint32_t e : face.edges)
-      if (e != none) impl_->touch_edge(e, f, centre, reach, out);
-    for (const std::uint32_t v : face.vertices)
-      if (v != none) impl_->touch_vertex(v, centre, reach, out);
+    if (nearest_side > impl_->well_inside) continue;
+    // What is out of reach of a side's line, or this side of it, need not be loaded.
+    const double far = reach * reach * (1 + 1e-9) - height * height;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (side[k] * side[k] > far) continue;
+      if (face.edges[k] != none && side[k] <= 2 * tie) features.edge(face.edges[k], f);
+      const double before = side[(k + 2) % 3];  // the other side at corner k
+      if (face.vertices[k] != none && before * before <= far) features.vertex(face.vertices[k]);
+    }
   }
+  features.test();
   if (out.size() > 1) impl_->merge(out);
 }
 

@@ -18,13 +18,14 @@ inline Vec4 quad(const Vec3& v, double fourth) { return {v.x(), v.y(), v.z(), fo
 struct alignas(64) GrainRow {
   Vec4 place = Vec4::Zero();   // m: centre, radius
   Vec4 motion = Vec4::Zero();  // m/s: velocity, half a step before the place; then 1/m: one over the radius
-  Vec4 spin = Vec4::Zero();    // rad/s: angular velocity, likewise; then 0
+  Vec4 spin = Vec4::Zero();    // rad/s: angular velocity, likewise; then kg: mass
   Vec4 arrival = Vec4::Zero();  // m/s: velocity at the place if the acceleration has stayed what it was at the place before;
                                 // then 2^-level of the grain, 0 where all grains are due at every step
   auto position() const { return place.head<3>(); }
   auto velocity() const { return motion.head<3>(); }
   auto angular_velocity() const { return spin.head<3>(); }
   double radius() const { return place[3]; }
+  double mass() const { return spin[3]; }
 };
 
 // What acts on a grain.

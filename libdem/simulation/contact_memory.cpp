@@ -182,6 +182,7 @@ WallContacts wall_contacts_of_chunk(const ListInput& in, const GrainStore& grain
       c.last_overlap = last_overlap(setup.law, setup.wall_curvature ? most_conforming(flat) : flat);
       fresh.candidate.push_back(c);
       fresh.activity.push_back(activity);
+      fresh.due_from.push_back(0);
     }
     if (first == fresh.candidate.size()) continue;
     fresh.chunk.emplace_back();
@@ -230,6 +231,7 @@ WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, c
       all.chunk.push_back(chunk);
     }
     append(all.activity, part.activity);
+    append(all.due_from, part.due_from);
     append(all.parts, part.parts);
     append(all.contact, part.contact);
     append(all.last, part.last);

@@ -38,7 +38,8 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   for (std::size_t r = 0; r < n; ++r) {
     const std::uint32_t i = grains.order[r];
     grains.row_of[i] = std::uint32_t(r);
-    grains.rows[r] = {quad(p.position[i], p.radius[i]), quad(p.velocity[i], 1 / p.radius[i]), quad(p.angular_velocity[i], 0),
+    grains.rows[r] = {quad(p.position[i], p.radius[i]), quad(p.velocity[i], 1 / p.radius[i]),
+                      quad(p.angular_velocity[i], grains.caller_mass[i]),
                       rows_before.empty() ? quad(p.velocity[i], 0) : rows_before[row_before[i]].arrival};
     grains.mass[r] = grains.caller_mass[i];
     grains.inertia[r] = grains.caller_inertia[i];

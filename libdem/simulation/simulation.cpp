@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "libdem/contact/due_list.hpp"
 #include "libdem/contact/forces.hpp"
 #include "libdem/contact/regroup.hpp"
 #include "libdem/errors.hpp"
@@ -53,7 +54,6 @@ struct Simulation::Engine {
   MaterialTable materials;
   std::uint64_t step = 0;
   GrainStore grains;
-  std::vector<double> kick, turn;  // [N] s/kg, s/(kg m^2): the step over mass and inertia, by row
   std::vector<WallPose> poses;
   double mean_radius = 1, skin = 0;  // m
   std::uint64_t listed_step = 0;
@@ -294,12 +294,6 @@ struct Simulation::Engine {
 
   void lay_out_rows(std::vector<std::uint32_t> order) {
     lay_out(grains, std::move(order));
-    kick.resize(size());
-    turn.resize(size());
-    for (std::size_t r = 0; r < size(); ++r) {
-      kick[r] = setup.step / grains.mass[r];
-      turn[r] = setup.step / grains.inertia[r];
-    }
     chunk_level.assign(chunks_of(size()), 0);  // all are due where lists are built
     chunk_speed.assign(chunks_of(size()), 0.0);
     chunk_jolt.assign(chunks_of(size()), 0.0);
@@ -411,14 +405,12 @@ struct Simulation::Engine {
   struct Columns {
     GrainRow* rows;
     Vec4* spun;
-    const double *mass, *kick, *turn;
     std::uint8_t *level, *asked;
     double step, local_damping;
     std::uint8_t highest;
   };
   Columns columns() {
-    return {grains.rows.data(),  grains.spun.data(),  grains.mass.data(), kick.data(),         turn.data(),
-            grains.level.data(), grains.asked.data(), setup.step,         setup.local_damping, setup.levels};
+    return {grains.rows.data(), grains.spun.data(), grains.level.data(), grains.asked.data(), setup.step, setup.local_damping, setup.levels};
   }
 
   // What evaluate() does to the grains of a chunk that are due, when the contacts' forces on them are there.
@@ -427,46 +419,50 @@ struct Simulation::Engine {
     const std::uint32_t c = due_chunks[d];
     const Columns on = columns();
     const Vec4 gravity = quad(setup.gravity, 0);
-    const std::uint8_t now_due = due;
-    const double watched = least_watched;
     const std::size_t begin = c * chunk_rows, end = std::min(begin + chunk_rows, size());
-    Motion motion;
-    pressed[c].above.clear();
-    std::uint8_t finest = on.highest;
-    double gravity_shift = 0, largest = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      Vec4 weight = on.mass[i] * gravity;
-      if constexpr (Levels) {
-        const std::uint8_t before = on.level[i];
-        if (before > now_due) {
-          finest = std::min(finest, before);
-          continue;
-        }
-        const std::uint8_t level = std::min(on.asked[i], now_due);
+    std::array<std::uint32_t, chunk_rows> places;
+    std::span<const std::uint32_t> rows(places.data(), end - begin);
+    double gravity_shift = 0;
+    if constexpr (Levels) {
+      const std::span<const std::uint8_t> levels(on.level + begin, end - begin);
+      rows = list_due(levels, due, std::uint32_t(begin), places);
+      for (const std::uint32_t i : rows) {
+        const std::uint8_t before = on.level[i], level = std::min(on.asked[i], due);
         on.level[i] = level;
-        finest = std::min(finest, level);
-        if (level != before) gravity_shift += 0.5 * (stride(level) - stride(before)) * weight.dot(on.rows[i].motion);
-        weight *= stride(level);
+        if (level != before) gravity_shift += 0.5 * (stride(level) - stride(before)) * on.rows[i].mass() * gravity.dot(on.rows[i].motion);
       }
-      const Vec4 force = forces[i - begin].force + weight;
-      forces[i - begin].force = force;
-      largest = std::max(largest, force[3]);
-      if (force[3] > watched) [[unlikely]] {
-        const GrainRow& grain = on.rows[i];
-        if (force[3] > watched_force(grain.radius()))
-          pressed[c].above.push_back(
-              {std::uint32_t(i), grains.id[i], force[3], 0, grain.velocity().norm(), grain.angular_velocity().norm(), grain.position()});
-      }
-      if (move) kick_and_drift<Levels>(on, i, forces[i - begin], motion);
+      chunk_level[c] = std::ranges::min(levels);
+    } else {
+      std::iota(places.begin(), places.begin() + rows.size(), std::uint32_t(begin));
     }
+
+    double largest = 0;
+    for (const std::uint32_t i : rows) largest = std::max(largest, forces[i - begin].force[3]);
     pressed[c].largest = largest;
-    chunk_level[c] = finest;
+    pressed[c].above.clear();
+    if (largest > least_watched)
+      for (const std::uint32_t i : rows) watch(c, i, forces[i - begin].force[3]);
+
+    Motion motion;
+    for (const std::uint32_t i : rows) {
+      ForceRow& acting = forces[i - begin];
+      acting.force += (Levels ? stride(on.level[i]) * on.rows[i].mass() : on.rows[i].mass()) * gravity;
+      if (move) kick_and_drift<Levels>(on, i, acting, motion);
+    }
     // A grain that changes its level falls for another time than its weight acts.
     pairs.chunk[c].ledger.time_stepping -= setup.step * gravity_shift;
     if (move)
       remember(motion, c);
     else
       keep_forces(c, forces);
+  }
+
+  // Remembers a grain that is pressed with more than its limit, N.
+  void watch(std::uint32_t chunk, std::uint32_t row, double force) {
+    const GrainRow& grain = grains.rows[row];
+    if (force > watched_force(grain.radius()))
+      pressed[chunk].above.push_back(
+          {row, grains.id[row], force, 0, grain.velocity().norm(), grain.angular_velocity().norm(), grain.position()});
   }
 
   // Where a state and the next advance() find them.
@@ -496,8 +492,9 @@ struct Simulation::Engine {
   template <bool Levels>
   [[gnu::always_inline]] static inline void kick_and_drift(const Columns& on, std::size_t i, ForceRow& acting, Motion& motion) {
     const Vec4 three(1, 1, 1, 0);
-    Vec4 faster = (on.kick[i] * three).cwiseProduct(acting.force), spun = on.turn[i] * acting.torque;
     GrainRow& grain = on.rows[i];
+    const double kick = on.step / grain.mass(), turn = 2.5 * kick * (grain.motion[3] * grain.motion[3]);  // a sphere's inertia is 2/5 m R^2
+    Vec4 faster = kick * three.cwiseProduct(acting.force), spun = turn * acting.torque;
     if (on.local_damping != 0) {
       faster = damped(on.local_damping, grain.motion, faster);
       spun = damped(on.local_damping, grain.spin, spun);
@@ -740,10 +737,10 @@ std::size_t Simulation::bytes() const {
   const GrainStore& g = e.grains;
   const Particles& p = g.caller;
   return recorded + bytes_of(p.id, p.material, p.radius, p.position, p.velocity, p.angular_velocity, g.caller_mass, g.caller_inertia) +
-         bytes_of(g.order, g.row_of, g.rows, g.forces, g.spun, g.mass, g.inertia, g.material, g.id, g.listed, g.level, g.asked, e.kick, e.turn) +
-         bytes_of(e.pairs.block, e.pairs.activity, e.pairs.kind, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.crossing,
+         bytes_of(g.order, g.row_of, g.rows, g.forces, g.spun, g.mass, g.inertia, g.material, g.id, g.listed, g.level, g.asked) +
+         bytes_of(e.pairs.block, e.pairs.activity, e.pairs.due_from, e.pairs.kind, e.pairs.birth_step, e.pairs.rolling, e.pairs.last, e.pairs.crossing,
                   e.pairs.incoming, e.pairs.chunk) + e.sheets.bytes() +
-         bytes_of(e.walls.candidate, e.walls.activity, e.walls.parts, e.walls.near_parts, e.walls.contact, e.walls.last, e.walls.chunk, e.walls.chunk_begin);
+         bytes_of(e.walls.candidate, e.walls.activity, e.walls.due_from, e.walls.parts, e.walls.near_parts, e.walls.contact, e.walls.last, e.walls.chunk, e.walls.chunk_begin);
 }
 double Simulation::stable_step() const { return dem::stable_step(engine_->guarded()); }
 
