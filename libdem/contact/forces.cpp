@@ -448,8 +448,49 @@ JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairC
                                            largest_overlap, sums, chunk);
 }
 
+// What a thread will read and write of the chunk that it comes to next, asked of memory little by little while it evaluates the one before: in
+// another chunk each array is read from a place that no processor expects.
+class NextChunk {
+ public:
+  NextChunk(const ForceInput& in, const PairContacts& pairs, const std::vector<std::uint8_t>& asked, std::optional<std::uint32_t> next) {
+    if (!next) return;
+    const PairContacts::Chunk& chunk = pairs.chunk[*next];
+    const std::size_t begin = *next * chunk_rows, end = std::min(begin + chunk_rows, in.level.size());
+    add(pairs.due_from, chunk.begin, chunk.end);
+    add(pairs.activity, chunk.begin, chunk.end);
+    add(in.level, begin, end);
+    add(asked, begin, end);
+    add(in.grains, begin, end);
+    add(in.spun, begin, end);
+    add(pairs.kind, chunk.begin, chunk.end);
+    add(pairs.incoming, chunk.incoming_begin, chunk.incoming_end);
+  }
+  // A range at a time in a loop of its own: one that asked at each line which range it is in took what it gave.
+  void ask_for_some() {
+    if (at_ == size_) return;
+    Range& range = ranges_[at_];
+    constexpr std::ptrdiff_t some = 32 * 64;
+    const char* const stop = range.end - range.begin > some ? range.begin + some : range.end;
+    for (const char* line = range.begin; line < stop; line += 64) __builtin_prefetch(line, 1, 2);
+    range.begin = stop;
+    at_ += stop == range.end;
+  }
+
+ private:
+  struct Range {
+    const char *begin, *end;
+  };
+  template <class Array>
+  void add(const Array& array, std::size_t begin, std::size_t end) {
+    if (begin < end) ranges_[size_++] = {reinterpret_cast<const char*>(array.data() + begin), reinterpret_cast<const char*>(array.data() + end)};
+  }
+  std::array<Range, 8> ranges_;
+  std::size_t at_ = 0, size_ = 0;
+};
+
 template <class Law, bool Keep>
-void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, const ChunkOutput& out) {
+void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::optional<std::uint32_t> next,
+                         const ChunkOutput& out) {
   PairContacts::Chunk& chunk = pairs.chunk[number];
   Pack largest_overlap = 0.0;
   LedgerSums sums;
@@ -490,10 +531,12 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
   };
   const std::span<const std::uint32_t> due =
       list_due(std::span(pairs.due_from).subspan(chunk.begin, chunk.end - chunk.begin), due_from_at(in), chunk.begin, chunk.places);
+  NextChunk ahead(in, pairs, out.asked, next);
   const auto acts = [&](std::size_t n) { return n < due.size() && pairs.activity[due[n]].acts; };
   for (std::size_t n = 0; n < due.size(); ++n) {
     if (acts(n + blocks_ahead)) prefetch(pairs.block[due[n + blocks_ahead]]);
     if (acts(n + grains_ahead)) prefetch_grains(in, pairs.block[due[n + grains_ahead]]);
+    ahead.ask_for_some();
     visit(due[n]);
     pairs.due_from[due[n]] = pairs.activity[due[n]].due_from();
   }
@@ -844,15 +887,18 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
 // All contacts of one chunk of grains that are due; nobody else adds forces to these grains meanwhile.
 template <class Law, bool Keep>
 void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, std::size_t number,
-                    const ChunkOutput& out) {
-  evaluate_pair_chunk<Law, Keep>(law, in, pairs, number, out);
+                    std::optional<std::uint32_t> next, const ChunkOutput& out) {
+  evaluate_pair_chunk<Law, Keep>(law, in, pairs, number, next, out);
   for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w)
     evaluate_wall_chunk<Law, Keep>(law, in, walls, walls.chunk[w], out);
 }
 
 // What pairs of other chunks do to the grains of this one.
 void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, ForceSheet& sheet, std::vector<std::uint8_t>& asked) {
-  for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < pairs.chunk[chunk].incoming_end; ++k) {
+  constexpr std::uint32_t incoming_ahead = 12;
+  const std::uint32_t end = pairs.chunk[chunk].incoming_end;
+  for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < end; ++k) {
+    if (k + incoming_ahead < end) __builtin_prefetch(&pairs.crossing[pairs.incoming[k + incoming_ahead].crossing]);
     const PairContacts::Incoming& in = pairs.incoming[k];
     const Activity& activity = pairs.activity[in.block];
     if (activity.asleep || activity.level > due) continue;
@@ -951,7 +997,8 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
       while (const std::optional<std::uint32_t> taken = turn == 0 ? share.take_first() : share.take_last()) {
         const std::uint32_t k = *taken;
         const std::uint32_t number = in.due_chunks[k];
-        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, ChunkOutput{*sheet, out.asked});
+        const std::optional<std::uint32_t> next = k + 1 < count ? std::optional(in.due_chunks[k + 1]) : std::nullopt;
+        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, next, ChunkOutput{*sheet, out.asked});
         std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
         if (ready(k)) {
           progress[k].store(Progress::taken, std::memory_order_relaxed);
