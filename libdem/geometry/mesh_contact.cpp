@@ -62,8 +62,8 @@ struct MeshContactFinder::Impl {
   std::vector<Vertex> vertices;
   std::vector<Vec3> directions;  // unit, along the edges that leave a vertex
   double tie = 0;                // m
-  // m. No vertex of a face is nearest to what lies further than this from all of its sides: of two unit vectors along sides from the vertex one
-  // would have a product with the way from there to x of at least |x|^2/(2 sides), more than a tie.
+  // m. Over what lies further than this from all sides of a face none of its vertices is touched: of the unit vectors along its two sides
+  // there one has a product with the way x from the vertex of at least |x|^2 over twice the longest side, which is more than a tie.
   double well_inside = 0;
   double merge_cosine = 1;
 
