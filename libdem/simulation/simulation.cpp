@@ -493,7 +493,7 @@ struct Simulation::Engine {
   [[gnu::always_inline]] static inline void kick_and_drift(const Columns& on, std::size_t i, ForceRow& acting, Motion& motion) {
     const Vec4 three(1, 1, 1, 0);
     GrainRow& grain = on.rows[i];
-    const double kick = on.step / grain.mass(), turn = 2.5 * kick * (grain.motion[3] * grain.motion[3]);  // a sphere's inertia is 2/5 m R^2
+    const double kick = on.step / grain.mass(), turn = inverse_sphere_inertia(kick, grain.motion[3]);
     Vec4 faster = kick * three.cwiseProduct(acting.force), spun = turn * acting.torque;
     if (on.local_damping != 0) {
       faster = damped(on.local_damping, grain.motion, faster);
