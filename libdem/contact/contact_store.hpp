@@ -55,7 +55,8 @@ struct PairContacts {
     std::array<std::uint32_t, width> first, second;                             // rows of grains
     std::array<Column, 3> spring{};                                             // m, tangential
     Column contact_radius{};                                                    // m, as in ContactMemory
-    std::array<Column, constants_per_contact> constant{};                       // of the table contact_constants
+    Column cube_root{};                                                         // m^(1/3), PairConstants::cube_root; all else follows
+                                                                                // from the rows of grains, with less to read
   };
   struct alignas(64) RollingSprings {
     std::array<Column, 3> torque{};  // N m, elastic part of the one on the first grain

@@ -102,12 +102,12 @@ inline void fill_contacts(PairConstants<Pack>& c, Get get) {
     (fill(std::integral_constant<std::size_t, M>{}), ...);
   }(std::make_index_sequence<constants_per_contact>{});
 }
-// All but those that follow from the radii.
+// All but those that follow from the rows of the grains.
 inline void fill_constants(PairConstants<Pack>& c, const MaterialTable& materials, const PairContacts& pairs, std::size_t number,
                            std::size_t lane) {
   const PairConstants<double>& kind = materials.pair[pairs.kind[number].material_pair];
   fill_materials(c, [&](auto member, std::size_t) { return Pack(kind.*member()); });
-  fill_contacts(c, [&](auto, std::size_t m) { return load(pairs.block[number].constant[m], lane); });
+  c.cube_root = load(pairs.block[number].cube_root, lane);
 }
 
 // How two bodies moved last.
@@ -313,6 +313,9 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
   const Pack distance = only(distance2 > Pack(0.0), distance2 * per_distance), curvature = inverse_i + inverse_j;  // 1/R*
   const Pack square = c.cube_root * c.cube_root;
   set_effective_radius(c, Pack(square * c.cube_root), c.cube_root, Pack(square * curvature));
+  const Pack &mass_i = spin_i[3], &mass_j = spin_j[3];
+  set_effective_mass(c, mass_i, mass_j);
+  set_effective_inertia(c, sphere_inertia(mass_i, radius_i), sphere_inertia(mass_j, radius_j));
   // The contact point divides the branch in the ratio of the radii: R_i/(R_i + R_j) = R*/R_j.
   const Pack share = distance * c.effective_radius, arm_i = share * inverse_j, arm_j = share * inverse_i;
   const Triple<Pack> normal = branch * per_distance;
@@ -461,7 +464,7 @@ class NextChunk {
     add(in.level, begin, end);
     add(asked, begin, end);
     add(in.grains, begin, end);
-    add(in.spun, begin, end);
+    if (levels_in_use(in)) add(in.spun, begin, end);
     add(pairs.kind, chunk.begin, chunk.end);
     add(pairs.incoming, chunk.incoming_begin, chunk.incoming_end);
   }

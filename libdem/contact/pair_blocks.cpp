@@ -29,11 +29,6 @@ bool operator<(const Pair& a, const Pair& b) {
   return std::tie(a.i, a.j) < std::tie(b.i, b.j);
 }
 
-// Where blocks keep sqrt(m*).
-constexpr std::size_t root_mass_column = std::size_t(
-    std::ranges::find(contact_constants<double>, &PairConstants<double>::root_mass) - contact_constants<double>.begin());
-static_assert(root_mass_column < constants_per_contact);
-
 // In the order of the blocks: by crossing, pair of materials, whether they touch, level.
 std::uint32_t kind_of(bool crosses, std::uint32_t material_pair, const std::optional<std::uint8_t>& level) {
   return std::uint32_t(crosses) << 31 | material_pair << 9 | std::uint32_t(!level) << 8 | level.value_or(0);
@@ -100,15 +95,12 @@ LevelScale scale_of(const PairContacts& pairs, std::size_t number, const GrainTa
   constexpr float infinity = std::numeric_limits<float>::infinity();
   LevelScale least{infinity, infinity};
   for (std::size_t lane = 0; lane < width; lane += pack_width) {
-    const auto radius = [&](auto k, bool second) {
-      const std::uint32_t i = block.first[lane + k], j = block.second[lane + k];
-      return grains.rows[second && j < grains.size() ? j : i].radius();
-    };
-    const Pack radius_i([&](auto k) { return radius(k, false); }), radius_j([&](auto k) { return radius(k, true); });
+    const auto first = [&](auto k) -> const GrainRow& { return grains.rows[block.first[lane + k]]; };
+    const auto second = [&](auto k) -> const GrainRow& { return grains.rows[block.second[lane + k] < grains.size() ? block.second[lane + k] : block.first[lane + k]]; };
     PairConstants<Pack> c;
     c.effective_modulus = kind.effective_modulus;
-    c.effective_radius = harmonic(radius_i, radius_j);
-    c.root_mass = Pack([&](auto k) { return block.constant[root_mass_column][lane + k]; });
+    c.effective_radius = harmonic(Pack([&](auto k) { return first(k).radius(); }), Pack([&](auto k) { return second(k).radius(); }));
+    set_effective_mass(c, Pack([&](auto k) { return first(k).mass(); }), Pack([&](auto k) { return second(k).mass(); }));
     const LevelScale scale = level_scale(c, resolution);
     least = {std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
   }
@@ -145,17 +137,13 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
     PairContacts::Block& block = pairs.block[b];
     block.spring = {};
     block.contact_radius = {};
-    const auto body = [&](std::uint32_t i) {
-      return BodyConstants{grains.rows[i].radius(), grains.mass[i], grains.inertia[i]};
-    };
     const std::uint32_t kind = material_pair(grains, materials.size, lanes[b * width][0], lanes[b * width][1]);
     pairs.kind[b].material_pair = kind;
     for (std::size_t k = 0; k < width; ++k) {
       const auto [i, j] = lanes[b * width + k];
       block.first[k] = i;
       block.second[k] = j;
-      const PairConstants<double> c = pair_constants(materials.pair[kind], body(i), body(j < grains.size() ? j : i));
-      for (std::size_t m = 0; m < constants_per_contact; ++m) block.constant[m][k] = c.*contact_constants<double>[m];
+      block.cube_root[k] = cube_root(harmonic(grains.rows[i].radius(), grains.rows[j < grains.size() ? j : i].radius()));
     }
     pairs.kind[b].scale = scale_of(pairs, b, grains, materials, resolution);
   }
@@ -166,10 +154,11 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
 PairConstants<double> constants_of(const PairContacts& pairs, std::size_t lane, const LargeArray<GrainRow>& rows, std::size_t grains,
                                    const MaterialTable& materials) {
   const std::size_t b = lane / width, i = pairs.first(lane), j = pairs.second(lane);
-  PairConstants<double> c = materials.pair[pairs.kind[b].material_pair];
-  for (std::size_t m = 0; m < constants_per_contact; ++m) c.*contact_constants<double>[m] = pairs.block[b].constant[m][lane % width];
-  set_effective_radius(c, harmonic(rows[i].radius(), rows[j < grains ? j : i].radius()), c.cube_root, 1 / c.cube_root);
-  return c;
+  const auto body = [&](std::uint32_t row) {
+    const double mass = rows[row].mass(), radius = rows[row].radius();
+    return BodyConstants{radius, mass, sphere_inertia(mass, radius)};
+  };
+  return pair_constants(materials.pair[pairs.kind[b].material_pair], body(i), body(j < grains ? j : i));
 }
 
 void connect_chunks(PairContacts& pairs, std::size_t grains) {

@@ -13,8 +13,6 @@ namespace dem {
 struct GrainTable {
   const LargeArray<GrainRow>& rows;  // and the phantoms behind them
   const std::vector<std::uint8_t>& material;
-  const std::vector<double>& mass;     // kg
-  const std::vector<double>& inertia;  // kg m^2
   std::size_t size() const { return material.size(); }
 };
 

@@ -8,6 +8,7 @@
 
 #include "libdem/case/derived.hpp"
 #include "libdem/contact/laws.hpp"
+#include "libdem/particles/particles.hpp"
 
 namespace dem {
 
@@ -74,13 +75,26 @@ inline void set_effective_radius(PairConstants<double>& c, double effective_radi
   set_effective_radius(c, effective_radius, root, 1 / root);
 }
 
+// From the bodies' masses, kg: sqrt(m*), by one root and no quotient.
+template <class Real>
+void set_effective_mass(PairConstants<Real>& c, const Real& a, const Real& b) {
+  const Real product = a * b;
+  c.root_mass = product * inverse_root(Real(product * (a + b)));
+}
+// From their moments of inertia, kg m^2, likewise: I_i I_j/(I_i + I_j).
+template <class Real>
+void set_effective_inertia(PairConstants<Real>& c, const Real& a, const Real& b) {
+  const Real root = inverse_root(Real(a + b));
+  c.effective_inertia = a * b * (root * root);
+}
+
 // Two spheres.
 inline PairConstants<double> pair_constants(const PairConstants<double>& materials, const BodyConstants& a,
                                             const BodyConstants& b) {
   PairConstants<double> c = materials;
   set_effective_radius(c, harmonic(a.radius, b.radius));
-  c.root_mass = std::sqrt(harmonic(a.mass, b.mass));
-  c.effective_inertia = harmonic(a.inertia, b.inertia);
+  set_effective_mass(c, a.mass, b.mass);
+  set_effective_inertia(c, a.inertia, b.inertia);
   return c;
 }
 

@@ -49,7 +49,7 @@ struct Contents {
     target.second[k] = source.second[x];
     for (std::size_t c = 0; c < 3; ++c) target.spring[c][k] = source.spring[c][x];
     target.contact_radius[k] = source.contact_radius[x];
-    for (std::size_t c = 0; c < constants_per_contact; ++c) target.constant[c][k] = source.constant[c][x];
+    target.cube_root[k] = source.cube_root[x];
     pairs.birth_step[to] = birth_step[from];
     if (!pairs.rolling.empty())
       for (std::size_t c = 0; c < 3; ++c) pairs.rolling[b].torque[c][k] = rolling[from / width].torque[c][x];

@@ -49,8 +49,8 @@ struct PairConstants {
   Real root_adhesion_radius;  // m^(1/2), sqrt(a0) = k^(1/4) R*^(1/3)
 };
 
-// TABLES of the members: those of the two materials; those that differ from contact to contact of the same materials, which blocks of
-// contacts keep; and those that follow from both and the radii (set_effective_radius), which is less work than to read them.
+// TABLES of the members: those of the two materials; those that differ from contact to contact of the same materials; and those that
+// follow from both and the radii (set_effective_radius), which is less work than to read them.
 template <class Real>
 inline constexpr std::array material_constants = {
     &PairConstants<Real>::effective_modulus,  &PairConstants<Real>::effective_shear,  &PairConstants<Real>::normal_damping,

@@ -44,6 +44,7 @@ inline GrainRow phantom() {
   GrainRow row;
   row.place = {1e30, 0, 0, 1};
   row.motion = {0, 0, 0, 1};
+  row.spin = {0, 0, 0, 1};
   return row;
 }
 

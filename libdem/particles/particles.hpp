@@ -13,7 +13,8 @@ namespace dem {
 // V = (4/3) pi R^3, m^3.
 inline double sphere_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
 // I = (2/5) m R^2, kg m^2.
-inline double sphere_inertia(double mass, double radius) { return 0.4 * mass * radius * radius; }
+template <class Real>
+Real sphere_inertia(const Real& mass, const Real& radius) { return 0.4 * mass * radius * radius; }
 // 1/(kg m^2): one over it, from one over mass, 1/kg, and radius, 1/m; no division.
 inline double inverse_sphere_inertia(double per_mass, double per_radius) { return 2.5 * per_mass * (per_radius * per_radius); }
 

@@ -29,7 +29,7 @@ struct GrainStore {
   std::vector<std::uint8_t> asked;    // the level that its contacts ask for; and phantoms
 
   std::size_t size() const { return caller_mass.size(); }
-  GrainTable table() const { return {rows, material, mass, inertia}; }
+  GrainTable table() const { return {rows, material}; }
 };
 
 GrainStore make_grain_store(Particles particles, const std::vector<Material>& materials);

@@ -12,10 +12,9 @@ namespace dem::support {
 struct Scene {
   LargeArray<GrainRow> rows;
   std::vector<std::uint8_t> material;
-  std::vector<double> mass, inertia;
   PairList list;
   MaterialTable materials;
-  GrainTable table() const { return {rows, material, mass, inertia}; }
+  GrainTable table() const { return {rows, material}; }
 };
 
 // Grains of two materials, enough for several chunks.
@@ -30,10 +29,9 @@ inline Scene random_scene(std::size_t n, std::uint64_t seed) {
     radius.push_back(0.4 + 0.2 * draw(random));
     GrainRow row;
     row.place = quad(x[i], radius[i]);
-    s.rows.push_back(row);
     s.material.push_back(draw(random) < 0.7 ? 0 : 1);
-    s.mass.push_back(1 + draw(random));
-    s.inertia.push_back(1 + draw(random));
+    row.spin[3] = 1 + draw(random);
+    s.rows.push_back(row);
   }
   s.rows.resize(n + chunks_of(n), phantom());
   s.list = build_pair_list(x, radius, 0.2);

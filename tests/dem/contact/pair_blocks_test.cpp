@@ -99,10 +99,15 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
         }
         const PairConstants<double>& kind = s.materials.pair[pairs.kind[b].material_pair];
         EXPECT_EQ(kind.work_of_adhesion, s.materials(s.material[i], s.material[j]).work_of_adhesion);
-        const PairConstants<double> expected = pair_constants(kind, {s.rows[i].radius(), s.mass[i], s.inertia[i]},
-                                                              {s.rows[j].radius(), s.mass[j], s.inertia[j]});
-        for (std::size_t m = 0; m < constants_per_contact; ++m)
-          EXPECT_EQ(pairs.block[b].constant[m][k], expected.*contact_constants<double>[m]);
+        const auto body = [&](std::uint32_t row) {
+          const double mass = s.rows[row].mass(), radius = s.rows[row].radius();
+          return BodyConstants{radius, mass, sphere_inertia(mass, radius)};
+        };
+        const PairConstants<double> expected = pair_constants(kind, body(i), body(j));
+        EXPECT_EQ(pairs.block[b].cube_root[k], expected.cube_root);
+        const PairConstants<double> given = constants_of(pairs, PairContacts::width * b + k, s.rows, s.table().size(), s.materials);
+        for (const auto member : contact_constants<double>) EXPECT_EQ(given.*member, expected.*member);
+        for (const auto member : radius_constants<double>) EXPECT_EQ(given.*member, expected.*member);
       }
       EXPECT_EQ(pairs.kind[b].scale.radius, least.radius);
       EXPECT_EQ(pairs.kind[b].scale.speed, least.speed);

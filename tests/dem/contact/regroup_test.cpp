@@ -59,7 +59,7 @@ auto contents(const PairContacts& pairs, std::size_t grains) {
     std::vector<double> one{double(pairs.kind[b].material_pair), pairs.contact_radius(lane), double(pairs.birth_step[lane]), pairs.last[lane].duration};
     for (const auto& column : pairs.block[b].spring) one.push_back(column[k]);
     for (const auto& column : pairs.rolling[b].torque) one.push_back(column[k]);
-    for (const auto& column : pairs.block[b].constant) one.push_back(column[k]);
+    one.push_back(pairs.block[b].cube_root[k]);
     if (pairs.acts(lane)) one.push_back(pairs.activity[b].level);
     EXPECT_TRUE(all.emplace(pair_of(pairs, lane), one).second);
   }
@@ -103,7 +103,7 @@ TEST(Regroup, LeavesBlocksAsTheyWouldBeMadeOfTheirLanes) {
   const PairContacts made = make_pair_contacts(lanes_of(pairs), s.table(), s.materials, resolution, true, true);
   ASSERT_EQ(made.block.size(), pairs.block.size());
   for (std::size_t b = 0; b < made.block.size(); ++b) {
-    EXPECT_EQ(pairs.block[b].constant, made.block[b].constant);
+    EXPECT_EQ(pairs.block[b].cube_root, made.block[b].cube_root);
     EXPECT_EQ(pairs.kind[b].material_pair, made.kind[b].material_pair);
     EXPECT_EQ(pairs.kind[b].crossing, made.kind[b].crossing);
     EXPECT_EQ(pairs.kind[b].scale.radius, made.kind[b].scale.radius);
