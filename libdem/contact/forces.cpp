@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "libdem/ask_memory.hpp"
 #include "libdem/contact/due_list.hpp"
 #include "libdem/contact/rows.hpp"
 #include "libdem/errors.hpp"
@@ -403,16 +404,8 @@ inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
 // be due, so a processor does not see by itself what is read next.
 constexpr std::uint32_t blocks_ahead = 6, grains_ahead = 2;
 
-inline void prefetch(const Block& block) {
-  const char* const begin = reinterpret_cast<const char*>(&block);
-  for (std::size_t byte = 0; byte < sizeof(Block); byte += 64) __builtin_prefetch(begin + byte, 1);
-}
-inline void prefetch_grains(const ForceInput& in, const Block& block) {
-  for (std::size_t k = 0; k < PairContacts::width; ++k) {
-    const GrainRow& row = in.grains[block.second[k]];
-    __builtin_prefetch(&row);
-    __builtin_prefetch(&row.spin);
-  }
+inline void ask_for_second_grains(const ForceInput& in, const Block& block) {
+  for (std::size_t k = 0; k < PairContacts::width; ++k) ask_memory_for(in.grains[block.second[k]]);
 }
 
 // A block: level, law, impulses. Says by its activity whether one of its lanes is a contact. One that has just woken acts from now on,
@@ -537,8 +530,8 @@ void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pai
   NextChunk ahead(in, pairs, out.asked, next);
   const auto acts = [&](std::size_t n) { return n < due.size() && pairs.activity[due[n]].acts; };
   for (std::size_t n = 0; n < due.size(); ++n) {
-    if (acts(n + blocks_ahead)) prefetch(pairs.block[due[n + blocks_ahead]]);
-    if (acts(n + grains_ahead)) prefetch_grains(in, pairs.block[due[n + grains_ahead]]);
+    if (acts(n + blocks_ahead)) ask_memory_for<Use::write>(pairs.block[due[n + blocks_ahead]]);
+    if (acts(n + grains_ahead)) ask_for_second_grains(in, pairs.block[due[n + grains_ahead]]);
     ahead.ask_for_some();
     visit(due[n]);
     pairs.due_from[due[n]] = pairs.activity[due[n]].due_from();
@@ -779,12 +772,9 @@ Demand demand_of(const WallContacts& walls, const WallCandidate& candidate, cons
 }
 
 // What a grain near a wall will load: candidates stand in a row, but not what they refer to.
-inline void prefetch(const ForceInput& in, const WallContacts& walls, const WallCandidate& candidate) {
-  const char* const contact = reinterpret_cast<const char*>(&walls.contact[candidate.contact_begin]);
-  for (std::size_t byte = 0; byte < sizeof(WallContact); byte += 64) __builtin_prefetch(contact + byte, 1);
-  const GrainRow& row = in.grains[candidate.particle];
-  __builtin_prefetch(&row);
-  __builtin_prefetch(&row.spin);
+inline void ask_for_what_it_touches(const ForceInput& in, const WallContacts& walls, const WallCandidate& candidate) {
+  ask_memory_for<Use::write>(walls.contact[candidate.contact_begin]);
+  ask_memory_for(in.grains[candidate.particle]);
 }
 
 template <class Law, bool Keep>
@@ -876,7 +866,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
   const std::span<const std::uint32_t> due =
       list_due(std::span(walls.due_from).subspan(chunk.begin, chunk.end - chunk.begin), due_from_at(in), chunk.begin, chunk.places);
   for (std::size_t n = 0; n < due.size(); ++n) {
-    if (n + 2 < due.size() && walls.activity[due[n + 2]].acts) prefetch(in, walls, walls.candidate[due[n + 2]]);
+    if (n + 2 < due.size() && walls.activity[due[n + 2]].acts) ask_for_what_it_touches(in, walls, walls.candidate[due[n + 2]]);
     visit(due[n]);
     walls.due_from[due[n]] = walls.activity[due[n]].due_from();
   }
@@ -901,7 +891,7 @@ void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due
   constexpr std::uint32_t incoming_ahead = 12;
   const std::uint32_t end = pairs.chunk[chunk].incoming_end;
   for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < end; ++k) {
-    if (k + incoming_ahead < end) __builtin_prefetch(&pairs.crossing[pairs.incoming[k + incoming_ahead].crossing]);
+    if (k + incoming_ahead < end) ask_memory_for(pairs.crossing[pairs.incoming[k + incoming_ahead].crossing]);
     const PairContacts::Incoming& in = pairs.incoming[k];
     const Activity& activity = pairs.activity[in.block];
     if (activity.asleep || activity.level > due) continue;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "libdem/ask_memory.hpp"
 #include "libdem/geometry/mesh_topology.hpp"
 #include "libdem/geometry/mesh_tree.hpp"
 
@@ -179,12 +180,12 @@ struct MeshContactFinder::Impl {
     ToTest(const Impl& mesh, const Vec3& centre, double reach, std::vector<MeshTouch>& out)
         : mesh_(mesh), centre_(centre), reach_(reach), out_(out) {}
     void edge(std::uint32_t e, std::uint32_t facet) {
-      prefetch(&mesh_.edges[e], sizeof(Edge));
+      ask_memory_for(mesh_.edges[e]);
       add({e, facet});
     }
     void vertex(std::uint32_t v) {
-      prefetch(&mesh_.vertices[v], sizeof(Vertex));
-      prefetch(&mesh_.mesh.vertices[v], sizeof(Vec3));
+      ask_memory_for(mesh_.vertices[v]);
+      ask_memory_for(mesh_.mesh.vertices[v]);
       add({v, none});
     }
     void test() {
@@ -200,9 +201,6 @@ struct MeshContactFinder::Impl {
     struct Found {
       std::uint32_t id, facet;  // of a vertex none
     };
-    static void prefetch(const void* data, std::size_t bytes) {
-      for (std::size_t byte = 0; byte < bytes; byte += 64) __builtin_prefetch(static_cast<const char*>(data) + byte);
-    }
     void add(const Found& found) {
       found_[count_++] = found;
       if (count_ == found_.size()) test();
@@ -265,11 +263,7 @@ void MeshContactFinder::touches(const Vec3& centre, double reach, std::span<cons
                                 std::vector<MeshTouch>& out) const {
   out.clear();
   const double tie = impl_->tie;
-  for (const std::uint32_t f : candidates) {
-    const char* const face = reinterpret_cast<const char*>(&impl_->faces[f]);
-    __builtin_prefetch(face);
-    __builtin_prefetch(face + 64);
-  }
+  for (const std::uint32_t f : candidates) ask_memory_for(impl_->faces[f]);
   Impl::ToTest features(*impl_, centre, reach, out);
   for (const std::uint32_t f : candidates) {
     const Face& face = impl_->faces[f];
