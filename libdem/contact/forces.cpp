@@ -10,10 +10,10 @@
 #include <thread>
 #include <utility>
 
-#include "libdem/ask_memory.hpp"
 #include "libdem/contact/due_list.hpp"
 #include "libdem/contact/rows.hpp"
 #include "libdem/errors.hpp"
+#include "libdem/particles/ask_memory.hpp"
 
 // Inlines a whole law into the kernel that calls it. Not under the address sanitizer, which the compiler did not get through in a
 // quarter of an hour.

@@ -6,9 +6,9 @@
 #include <limits>
 #include <tuple>
 
-#include "libdem/ask_memory.hpp"
 #include "libdem/geometry/mesh_topology.hpp"
 #include "libdem/geometry/mesh_tree.hpp"
+#include "libdem/particles/ask_memory.hpp"
 
 namespace dem {
 namespace {
