@@ -74,9 +74,10 @@ inline void store(const Triple<Pack>& values, std::array<PairContacts::Column, 3
 struct ChunkOutput {
   ForceSheet& sheet;
   std::vector<std::uint8_t>& asked;
+  RowChunks chunks;
 
   // Of a phantom that of some grain of the chunk: nothing is added to it.
-  ForceRow& of(std::uint32_t row) const { return sheet[row % chunk_rows]; }
+  ForceRow& of(std::uint32_t row) const { return sheet[chunks.place(row)]; }
 };
 
 // Each constant of a table is get(the member, its number in the table). Members are constants of the compiler, and written out:
@@ -209,10 +210,10 @@ void choose_level(const ForceInput& in, std::uint8_t finest, const LevelScale& s
 
 // m/s, by how much the speed at which the bodies of a lane near each other may change until all levels are due again.
 double jolt_of(const ForceInput& in, const Block& block, bool crosses) {
-  double jolt = in.jolt[block.first[0] / chunk_rows];
+  double jolt = in.jolt[in.chunks.of(block.first[0])];
   if (!crosses) return jolt;
   for (std::size_t k = 0; k < PairContacts::width; ++k)
-    if (block.second[k] < in.level.size()) jolt = std::max(jolt, in.jolt[block.second[k] / chunk_rows]);
+    if (block.second[k] < in.level.size()) jolt = std::max(jolt, in.jolt[in.chunks.of(block.second[k])]);
   return jolt;
 }
 
@@ -451,7 +452,7 @@ class NextChunk {
   NextChunk(const ForceInput& in, const PairContacts& pairs, const std::vector<std::uint8_t>& asked, std::optional<std::uint32_t> next) {
     if (!next) return;
     const PairContacts::Chunk& chunk = pairs.chunk[*next];
-    const std::size_t begin = *next * chunk_rows, end = std::min(begin + chunk_rows, in.level.size());
+    const std::size_t begin = in.chunks.begin(*next), end = in.chunks.end(*next);
     add(pairs.due_from, chunk.begin, chunk.end);
     add(pairs.activity, chunk.begin, chunk.end);
     add(in.level, begin, end);
@@ -827,7 +828,7 @@ void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& wal
         if (!activity.asleep && levels_in_use(in)) {
           choose_level(in, candidate, activity, {0, speed, speed}, out);
           // What is out of sight is too far to be touched before all levels are due again.
-          const double earliest = sight - reach > in.foresight ? gap / (speed + in.jolt[candidate.particle / chunk_rows]) : 0;
+          const double earliest = sight - reach > in.foresight ? gap / (speed + in.jolt[in.chunks.of(candidate.particle)]) : 0;
           activity.quiet_until = quiet_until(in, earliest);
         }
         return;
@@ -887,7 +888,7 @@ void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, W
 }
 
 // What pairs of other chunks do to the grains of this one.
-void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due, ForceSheet& sheet, std::vector<std::uint8_t>& asked) {
+void add_crossing(const PairContacts& pairs, const RowChunks& chunks, std::size_t chunk, std::uint8_t due, ForceSheet& sheet, std::vector<std::uint8_t>& asked) {
   constexpr std::uint32_t incoming_ahead = 12;
   const std::uint32_t end = pairs.chunk[chunk].incoming_end;
   for (std::uint32_t k = pairs.chunk[chunk].incoming_begin; k < end; ++k) {
@@ -897,7 +898,7 @@ void add_crossing(const PairContacts& pairs, std::size_t chunk, std::uint8_t due
     if (activity.asleep || activity.level > due) continue;
     asked[in.row] = std::min(asked[in.row], activity.level);
     if (!activity.acts) continue;
-    ForceRow& to = sheet[in.row - chunk * chunk_rows];
+    ForceRow& to = sheet[chunks.place(in.row)];
     to.force += pairs.crossing[in.crossing].force;
     to.torque += pairs.crossing[in.crossing].torque;
   }
@@ -968,7 +969,7 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
       return std::ranges::none_of(pairs.chunk[in.due_chunks[k]].senders, [&](std::uint32_t sender) { return pending(pairs.chunk[sender]); });
     };
     const auto finish_with = [&](std::size_t k, ForceSheet& sheet) {
-      add_crossing(pairs, in.due_chunks[k], in.due, sheet, out.asked);
+      add_crossing(pairs, in.chunks, in.due_chunks[k], in.due, sheet, out.asked);
       finish(k, sheet);
       ++finished;
     };
@@ -991,7 +992,7 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
         const std::uint32_t k = *taken;
         const std::uint32_t number = in.due_chunks[k];
         const std::optional<std::uint32_t> next = k + 1 < count ? std::optional(in.due_chunks[k + 1]) : std::nullopt;
-        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, next, ChunkOutput{*sheet, out.asked});
+        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, next, ChunkOutput{*sheet, out.asked, in.chunks});
         std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
         if (ready(k)) {
           progress[k].store(Progress::taken, std::memory_order_relaxed);

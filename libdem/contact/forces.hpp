@@ -25,6 +25,7 @@ struct ForceInput {
   const std::vector<double>& jolt;               // [chunks] m/s, by how much two grains' speeds may change until then
   const std::vector<std::uint8_t>& level;        // [N] of the grains until now
   const LargeArray<Vec4>& spun;                 // rad/s, half of the last change of each grain's spin, and the phantoms'
+  RowChunks chunks;                              // of the grains
   const std::vector<std::uint32_t>& due_chunks;  // that have such a grain
 };
 

@@ -9,10 +9,6 @@ namespace {
 
 constexpr std::size_t width = PairContacts::width;
 
-std::size_t chunk_of(std::uint32_t row) {
-  return row / chunk_rows;
-}
-
 std::uint32_t material_pair(const GrainTable& grains, std::size_t materials, std::uint32_t i, std::uint32_t j) {
   const auto [a, b] = std::minmax(grains.material[i], grains.material[j]);
   return std::uint32_t(a * materials + b);
@@ -37,18 +33,17 @@ std::uint32_t kind_of(bool crosses, std::uint32_t material_pair, const std::opti
 }  // namespace
 
 Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t materials, const LevelOf& level) {
-  const std::size_t chunks = chunks_of(grains.size());
-  std::vector<Lanes> of_chunk(chunks);
+  const RowChunks chunks(grains.size());
+  std::vector<Lanes> of_chunk(chunks.count());
 #pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t c = 0; c < chunks; ++c) {
-    const std::size_t end = std::min((c + 1) * chunk_rows, grains.size());
+  for (std::size_t c = 0; c < chunks.count(); ++c) {
     std::vector<Pair> pairs;
-    for (std::uint32_t s = list.begin[c * chunk_rows]; s < list.begin[end]; ++s) {
+    for (std::uint32_t s = list.begin[chunks.begin(c)]; s < list.begin[chunks.end(c)]; ++s) {
       const std::uint32_t i = list.first[s], j = list.second[s];
       const std::optional<std::uint8_t> touches = level(i, j);
       const GrainRow &a = grains.rows[i], &b = grains.rows[j];
       const double gap = touches ? 0 : (a.position() - b.position()).norm() - a.radius() - b.radius();
-      pairs.push_back({kind_of(chunk_of(j) != c, material_pair(grains, materials, i, j), touches), i, j, gap});
+      pairs.push_back({kind_of(chunks.of(j) != c, material_pair(grains, materials, i, j), touches), i, j, gap});
     }
     std::sort(pairs.begin(), pairs.end());
     Lanes& lanes = of_chunk[c];
@@ -68,20 +63,21 @@ Lanes order_lanes(const PairList& list, const GrainTable& grains, std::size_t ma
 
 bool fit(const Lanes& lanes, const GrainTable& grains) {
   const std::size_t n = grains.size();
+  const RowChunks chunks(n);
   if (lanes.size() % width != 0) return false;
   std::pair<std::size_t, bool> last{0, false};
   for (std::size_t b = 0; b < lanes.size(); b += width) {
     const auto [i, j] = lanes[b];
     if (!(i < j && j < n)) return false;
-    const std::pair<std::size_t, bool> kind{chunk_of(i), chunk_of(j) != chunk_of(i)};
+    const std::pair<std::size_t, bool> kind{chunks.of(i), chunks.of(j) != chunks.of(i)};
     if (kind < last) return false;
     last = kind;
     const std::uint32_t materials = material_pair(grains, 256, i, j);
     for (std::size_t k = b + 1; k < b + width; ++k) {
       const auto [x, y] = lanes[k];
-      if (!(x < n && x < y && chunk_of(x) == kind.first)) return false;
+      if (!(x < n && x < y && chunks.of(x) == kind.first)) return false;
       if (y == n + kind.first) continue;  // the phantom
-      if (!(y < n && (chunk_of(y) != kind.first) == kind.second && material_pair(grains, 256, x, y) == materials))
+      if (!(y < n && (chunks.of(y) != kind.first) == kind.second && material_pair(grains, 256, x, y) == materials))
         return false;
     }
   }
@@ -109,7 +105,8 @@ LevelScale scale_of(const PairContacts& pairs, std::size_t number, const GrainTa
 
 PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, const MaterialTable& materials,
                                 const Resolution& resolution, bool rolling_spring, bool keep_ledger, PairContacts pairs) {
-  const std::size_t blocks = lanes.size() / width, chunks = chunks_of(grains.size());
+  const std::size_t blocks = lanes.size() / width;
+  const RowChunks chunks(grains.size());
   if (pairs.block.capacity() < blocks) {  // by little, as they are most of a run's memory
     pairs.block = {};
     pairs.block.reserve(blocks + blocks / 16);
@@ -121,14 +118,14 @@ PairContacts make_pair_contacts(const Lanes& lanes, const GrainTable& grains, co
   pairs.birth_step.assign(lanes.size(), 0);
   pairs.rolling.assign(rolling_spring ? blocks : 0, {});
   pairs.last.assign(keep_ledger ? lanes.size() : 0, {});
-  pairs.chunk.assign(chunks, {});
+  pairs.chunk.assign(chunks.count(), {});
 
   std::size_t at = 0;
-  for (std::size_t c = 0; c < chunks; ++c) {
+  for (std::size_t c = 0; c < chunks.count(); ++c) {
     PairContacts::Chunk& chunk = pairs.chunk[c];
     chunk.begin = chunk.inner_end = std::uint32_t(at);
-    for (; at < blocks && chunk_of(lanes[at * width][0]) == c; ++at)
-      if (chunk_of(lanes[at * width][1]) == c) chunk.inner_end = std::uint32_t(at + 1);
+    for (; at < blocks && chunks.of(lanes[at * width][0]) == c; ++at)
+      if (chunks.of(lanes[at * width][1]) == c) chunk.inner_end = std::uint32_t(at + 1);
     chunk.end = std::uint32_t(at);
   }
 
@@ -162,6 +159,7 @@ PairConstants<double> constants_of(const PairContacts& pairs, std::size_t lane, 
 }
 
 void connect_chunks(PairContacts& pairs, std::size_t grains) {
+  const RowChunks rows(grains);
   const std::size_t chunks = pairs.chunk.size();
   const auto for_each_crossing = [&](auto use) {
     for (std::uint32_t c = 0; c < chunks; ++c)
@@ -176,7 +174,7 @@ void connect_chunks(PairContacts& pairs, std::size_t grains) {
   }
   pairs.crossing.assign(crossing, {});
   std::vector<std::uint32_t> incoming(chunks + 1, 0);
-  for_each_crossing([&](std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t j) { ++incoming[chunk_of(j) + 1]; });
+  for_each_crossing([&](std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t j) { ++incoming[rows.of(j) + 1]; });
   for (std::size_t c = 0; c < chunks; ++c) {
     incoming[c + 1] += incoming[c];
     pairs.chunk[c].incoming_begin = incoming[c];
@@ -184,8 +182,8 @@ void connect_chunks(PairContacts& pairs, std::size_t grains) {
   }
   pairs.incoming.resize(incoming[chunks]);
   for_each_crossing([&](std::uint32_t c, std::uint32_t b, std::uint32_t k, std::uint32_t j) {
-    pairs.incoming[incoming[chunk_of(j)]++] = {j, pairs.kind[b].crossing + k, b};
-    std::vector<std::uint32_t>& senders = pairs.chunk[chunk_of(j)].senders;
+    pairs.incoming[incoming[rows.of(j)]++] = {j, pairs.kind[b].crossing + k, b};
+    std::vector<std::uint32_t>& senders = pairs.chunk[rows.of(j)].senders;
     if (senders.empty() || senders.back() != c) senders.push_back(c);
   });
 }

@@ -2,7 +2,9 @@
 // in libdem/neighbors), so that grains that touch lie close to each other in memory.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -34,12 +36,29 @@ struct alignas(64) ForceRow {
   Vec4 torque = Vec4::Zero();  // N m; then 0
 };
 
-// Rows are handled in chunks of so many. What a chunk's contacts do to its own grains is summed by whoever handles the chunk, in
-// a fixed order, so that sums do not depend on the number of threads. Behind the last grain stands one phantom per chunk,
-// infinitely far away in effect: what fills blocks of contacts up. In the order of space a chunk is a box, about 8 grains wide: pairs that
-// cross chunks cost more than others.
-inline constexpr std::size_t chunk_rows = 512;
-inline std::size_t chunks_of(std::size_t grains) { return (grains + chunk_rows - 1) / chunk_rows; }
+// Rows are handled in chunks. What a chunk's contacts do to its own grains is summed by whoever handles the chunk, in a fixed order, so
+// that sums do not depend on the number of threads. Behind the last grain stands one phantom per chunk, infinitely far away in effect: what
+// fills blocks of contacts up. In the order of space a chunk is a box: pairs that cross chunks cost more than others, and are the fewer the
+// larger chunks are; but threads want many to share. So a chunk has the largest power of two of rows that leaves at least `many` chunks,
+// within bounds: below them too many pairs would cross, above them a chunk's rows and forces would not fit a second-level cache.
+class RowChunks {
+ public:
+  static constexpr std::size_t least_rows = 512, most_rows = 2048;
+  static constexpr std::size_t many = 64;
+
+  explicit RowChunks(std::size_t grains)
+      : grains_(grains), bits_(std::bit_width(std::clamp(grains / many, least_rows, most_rows)) - 1) {}
+  std::size_t rows() const { return std::size_t{1} << bits_; }
+  std::size_t count() const { return (grains_ + rows() - 1) >> bits_; }
+  std::size_t of(std::size_t row) const { return row >> bits_; }
+  std::size_t place(std::size_t row) const { return row & (rows() - 1); }  // in its chunk; of a phantom any
+  std::size_t begin(std::size_t chunk) const { return chunk << bits_; }
+  std::size_t end(std::size_t chunk) const { return std::min(begin(chunk + 1), grains_); }
+
+ private:
+  std::size_t grains_;
+  int bits_;
+};
 inline GrainRow phantom() {
   GrainRow row;
   row.place = {1e30, 0, 0, 1};
@@ -49,6 +68,6 @@ inline GrainRow phantom() {
 }
 
 // What acts on the grains of a chunk.
-using ForceSheet = std::array<ForceRow, chunk_rows>;
+using ForceSheet = std::array<ForceRow, RowChunks::most_rows>;
 
 }  // namespace dem

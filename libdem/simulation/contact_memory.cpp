@@ -142,7 +142,7 @@ WallContacts wall_contacts_of_chunk(const ListInput& in, const GrainStore& grain
   WallContacts fresh;
   for (std::uint32_t w = 0; w < setup.walls.size(); ++w) {
     const std::uint32_t first = std::uint32_t(fresh.candidate.size());
-    for (std::size_t r = number * chunk_rows; r < std::min((number + 1) * chunk_rows, grains.size()); ++r) {
+    for (std::size_t r = grains.chunks().begin(number); r < grains.chunks().end(number); ++r) {
       const std::uint32_t i = grains.order[r];
       WallCandidate c{};
       Activity activity;
@@ -202,7 +202,7 @@ void append(std::vector<T>& all, const std::vector<T>& more) {
 
 WallContacts make_wall_contacts(const ListInput& in, const GrainStore& grains, const Memory& memory) {
   const std::vector<std::uint32_t> begin = first_of_rows(memory.wall_pairs, grains.size());
-  std::vector<WallContacts> parts(chunks_of(grains.size()));
+  std::vector<WallContacts> parts(grains.chunks().count());
   std::vector<std::exception_ptr> failed(parts.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t c = 0; c < parts.size(); ++c) try {

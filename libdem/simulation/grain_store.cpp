@@ -21,8 +21,8 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   const std::size_t n = grains.size();
   const Particles& p = grains.caller;
   grains.order = std::move(order);
-  const LargeArray<GrainRow> rows_before = std::exchange(grains.rows, LargeArray<GrainRow>(n + chunks_of(n), phantom()));
-  const LargeArray<Vec4> spun_before = std::exchange(grains.spun, LargeArray<Vec4>(n + chunks_of(n), Vec4::Zero()));
+  const LargeArray<GrainRow> rows_before = std::exchange(grains.rows, LargeArray<GrainRow>(n + grains.chunks().count(), phantom()));
+  const LargeArray<Vec4> spun_before = std::exchange(grains.spun, LargeArray<Vec4>(n + grains.chunks().count(), Vec4::Zero()));
   grains.forces.assign(n, ForceRow{});
   grains.mass.resize(n);
   grains.inertia.resize(n);
@@ -33,7 +33,7 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
   const std::vector<std::uint32_t> row_before = std::move(grains.row_of);
   grains.row_of.resize(n);
   grains.level.assign(n, 0);
-  grains.asked.assign(n + chunks_of(n), ForceOutput::nothing_asked);
+  grains.asked.assign(n + grains.chunks().count(), ForceOutput::nothing_asked);
 #pragma omp parallel for schedule(static)
   for (std::size_t r = 0; r < n; ++r) {
     const std::uint32_t i = grains.order[r];

@@ -29,6 +29,7 @@ struct GrainStore {
   std::vector<std::uint8_t> asked;    // the level that its contacts ask for; and phantoms
 
   std::size_t size() const { return caller_mass.size(); }
+  RowChunks chunks() const { return RowChunks(size()); }
   GrainTable table() const { return {rows, material}; }
 };
 

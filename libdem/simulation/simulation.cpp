@@ -129,7 +129,7 @@ struct Simulation::Engine {
       memory.last.resize(memory.pairs.size());
       memory.wall_last.resize(memory.wall_pairs.size());
     }
-    if (goes_on && state.layout.chunk_rows == chunk_rows)
+    if (goes_on && state.layout.chunk_rows == grains.chunks().rows())
       restore_lists(state.layout, memory);
     else
       build_lists(memory, {});
@@ -137,7 +137,7 @@ struct Simulation::Engine {
     if (!goes_on) {
       find_due();
       for (std::size_t r = 0; r < n; ++r) {
-        double& speed = chunk_speed[r / chunk_rows];
+        double& speed = chunk_speed[grains.chunks().of(r)];
         speed = std::max(speed, grains.rows[r].velocity().cwiseAbs().maxCoeff());
       }
       foresee();
@@ -217,7 +217,7 @@ struct Simulation::Engine {
     return {.grains = grains.rows, .materials = materials, .walls = setup.walls, .poses = poses, .step_length = setup.step,
             .step = step, .odometer = odometer, .wall_curvature = setup.wall_curvature, .record = record, .look = look,
             .due = due, .highest = setup.levels, .foresight = foresight, .jolt = closing_jolt, .level = grains.level,
-            .spun = grains.spun, .due_chunks = due_chunks};
+            .spun = grains.spun, .chunks = grains.chunks(), .due_chunks = due_chunks};
   }
   ForceOutput force_output() { return {sheets, grains.asked}; }
 
@@ -294,11 +294,11 @@ struct Simulation::Engine {
 
   void lay_out_rows(std::vector<std::uint32_t> order) {
     lay_out(grains, std::move(order));
-    chunk_level.assign(chunks_of(size()), 0);  // all are due where lists are built
-    chunk_speed.assign(chunks_of(size()), 0.0);
-    chunk_jolt.assign(chunks_of(size()), 0.0);
-    pressed.assign(chunks_of(size()), {});
-    closing_jolt.assign(chunks_of(size()), largest(closing_jolt));  // whose grains are in other chunks now
+    chunk_level.assign(grains.chunks().count(), 0);  // all are due where lists are built
+    chunk_speed.assign(grains.chunks().count(), 0.0);
+    chunk_jolt.assign(grains.chunks().count(), 0.0);
+    pressed.assign(grains.chunks().count(), {});
+    closing_jolt.assign(grains.chunks().count(), largest(closing_jolt));  // whose grains are in other chunks now
     find_due();
   }
 
@@ -314,7 +314,7 @@ struct Simulation::Engine {
   // Lists of what may touch around the present positions, the grains laid out anew. `far`: travelled(), or empty.
   void build_lists(const Memory& memory, const std::vector<double>& far) {
     const double little = too_little_left();
-    lay_out_rows(spatial_order(grains.caller.position, chunk_rows));
+    lay_out_rows(spatial_order(grains.caller.position, grains.chunks().rows()));
     std::vector<double> far_of_rows(far.size());
     for (std::size_t r = 0; r < far.size(); ++r) far_of_rows[r] = far[grains.order[r]];
     const std::vector<double> reach = reaches(far_of_rows, size(), skin, std::max(thinnest_skin(), 2 * little));
@@ -358,7 +358,7 @@ struct Simulation::Engine {
     const std::size_t blocks = pairs.block.size(), candidates = layout.wall_grain.size();
     if (layout.grain_level.size() != size() || layout.block_level.size() != blocks || layout.block_wake.size() != blocks ||
         layout.block_quiet.size() != blocks || layout.wall.size() != candidates || layout.wall_level.size() != candidates || layout.wall_wake.size() != candidates ||
-        layout.wall_quiet.size() != candidates || layout.closing_jolt.size() != chunks_of(size()) ||
+        layout.wall_quiet.size() != candidates || layout.closing_jolt.size() != grains.chunks().count() ||
         !std::all_of(layout.block_level.begin(), layout.block_level.end(), known) ||
         !std::all_of(layout.wall_level.begin(), layout.wall_level.end(), known) ||
         !std::all_of(layout.grain_level.begin(), layout.grain_level.end(), known))
@@ -419,8 +419,8 @@ struct Simulation::Engine {
     const std::uint32_t c = due_chunks[d];
     const Columns on = columns();
     const Vec4 gravity = quad(setup.gravity, 0);
-    const std::size_t begin = c * chunk_rows, end = std::min(begin + chunk_rows, size());
-    std::array<std::uint32_t, chunk_rows> places;
+    const std::size_t begin = grains.chunks().begin(c), end = grains.chunks().end(c);
+    std::array<std::uint32_t, RowChunks::most_rows> places;
     std::span<const std::uint32_t> rows(places.data(), end - begin);
     double gravity_shift = 0;
     if constexpr (Levels) {
@@ -467,8 +467,8 @@ struct Simulation::Engine {
 
   // Where a state and the next advance() find them.
   void keep_forces(std::uint32_t chunk, ForceSheet& forces) {
-    const std::size_t begin = chunk * chunk_rows;
-    std::copy_n(forces.begin(), std::min(chunk_rows, size() - begin), &grains.forces[begin]);
+    const std::size_t begin = grains.chunks().begin(chunk);
+    std::copy_n(forces.begin(), grains.chunks().end(chunk) - begin, &grains.forces[begin]);
     forces.fill({});
   }
 
@@ -523,7 +523,7 @@ struct Simulation::Engine {
     for (std::size_t c = 0; c < due_chunks.size(); ++c) {
       const Columns on = columns();
       Motion motion;
-      for (std::size_t i = c * chunk_rows; i < std::min((c + 1) * chunk_rows, size()); ++i)
+      for (std::size_t i = grains.chunks().begin(c); i < grains.chunks().end(c); ++i)
         setup.levels == 0 ? kick_and_drift<false>(on, i, grains.forces[i], motion) : kick_and_drift<true>(on, i, grains.forces[i], motion);
       remember(motion, c);
     }
@@ -768,7 +768,7 @@ State Simulation::state() const {
     state.layout.listed.push_back(grains.listed[r].head<3>());
     state.layout.reach.push_back(grains.listed[r][3]);
   }
-  state.layout.chunk_rows = chunk_rows;
+  state.layout.chunk_rows = grains.chunks().rows();
   state.layout.order = grains.order;
   for (std::size_t lane = 0; lane < e.pairs.lanes(); ++lane) {
     state.layout.first.push_back(e.pairs.first(lane));

@@ -1,5 +1,7 @@
 // Grains at random and the list of their pairs, as the blocks of contacts are made of.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -21,11 +23,12 @@ struct Scene {
 inline Scene random_scene(std::size_t n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> draw(0, 1);
+  const double side = 10 * std::max(1.0, std::cbrt(double(n) / 1600));
   Scene s;
   std::vector<Vec3> x;
   std::vector<double> radius;
   for (std::size_t i = 0; i < n; ++i) {
-    x.emplace_back(10 * draw(random), 10 * draw(random), 10 * draw(random));
+    x.emplace_back(side * draw(random), side * draw(random), side * draw(random));
     radius.push_back(0.4 + 0.2 * draw(random));
     GrainRow row;
     row.place = quad(x[i], radius[i]);
@@ -33,7 +36,7 @@ inline Scene random_scene(std::size_t n, std::uint64_t seed) {
     row.spin[3] = 1 + draw(random);
     s.rows.push_back(row);
   }
-  s.rows.resize(n + chunks_of(n), phantom());
+  s.rows.resize(n + RowChunks(n).count(), phantom());
   s.list = build_pair_list(x, radius, 0.2);
   s.materials =
       make_material_table({{"a", 1, 1e9, 0.2}, {"b", 1, 2e9, 0.3}},

@@ -204,7 +204,7 @@ void order_and_list(benchmark::State& state) {
   omp_set_num_threads(1);
   const Particles grains = support::packed_cube(int(state.range(0)), 1e-6, 0, 1);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(spatial_order(grains.position, chunk_rows));
+    benchmark::DoNotOptimize(spatial_order(grains.position, RowChunks(grains.size()).rows()));
     benchmark::DoNotOptimize(build_pair_list(grains.position, grains.radius, 0.1 * 0.4625e-3));
   }
   state.counters["grains/s"] = benchmark::Counter(double(grains.size()), benchmark::Counter::kIsIterationInvariantRate);

@@ -17,15 +17,18 @@ namespace {
 using support::level, support::random_scene, support::Scene;
 
 TEST(PairBlocks, HoldEveryPairOnceInBlocksOfOneKind) {
-  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{40}, chunk_rows, chunk_rows + 1, 3 * chunk_rows + 50}) {
+  constexpr std::size_t large = RowChunks::many * RowChunks::most_rows;  // a bed of larger chunks
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{40}, std::size_t{512}, std::size_t{513},
+                              std::size_t{1586}, large + 50}) {
     const Scene s = random_scene(n, n);
+    const RowChunks chunks(n);
     const Lanes lanes = order_lanes(s.list, s.table(), 2, level);
     ASSERT_EQ(lanes.size() % PairContacts::width, 0u);
     EXPECT_TRUE(fit(lanes, s.table()));
     std::multiset<std::pair<std::uint32_t, std::uint32_t>> found, expected;
     for (std::size_t k = 0; k < s.list.size(); ++k) expected.emplace(s.list.first[k], s.list.second[k]);
     for (std::size_t b = 0; b < lanes.size(); b += PairContacts::width) {
-      const auto chunk = [](std::uint32_t row) { return row / chunk_rows; };
+      const auto chunk = [&](std::uint32_t row) { return row / chunks.rows(); };
       const auto kind = [&](std::size_t k) {
         const auto [i, j] = lanes[k];
         return std::tuple(chunk(i), chunk(i) == chunk(j), std::minmax(s.material[i], s.material[j]), level(i, j));
@@ -80,7 +83,8 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
   EXPECT_EQ(pairs.last.size(), lanes.size());
   EXPECT_EQ(pairs.rolling.size(), pairs.block.size());
   std::map<std::uint32_t, std::uint32_t> crossing;  // row in `crossing`: second grain
-  ASSERT_EQ(pairs.chunk.size(), chunks_of(n));
+  const std::size_t rows = RowChunks(n).rows();
+  ASSERT_EQ(pairs.chunk.size(), (n + rows - 1) / rows);
   for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
     for (std::uint32_t b = pairs.chunk[c].begin; b < pairs.chunk[c].end; ++b) {
       LevelScale least{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
@@ -90,10 +94,10 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
         least = {std::min(least.radius, scale.radius), std::min(least.speed, scale.speed)};
         ASSERT_EQ(pairs.block[b].first[k], i);
         ASSERT_EQ(pairs.block[b].second[k], j);
-        ASSERT_EQ(i / chunk_rows, c);
+        ASSERT_EQ(i / rows, c);
         EXPECT_EQ(pairs.block[b].contact_radius[k], 0);
         if (j >= n) continue;
-        ASSERT_EQ(b < pairs.chunk[c].inner_end, j / chunk_rows == c);
+        ASSERT_EQ(b < pairs.chunk[c].inner_end, j / rows == c);
         if (b >= pairs.chunk[c].inner_end) {
           ASSERT_TRUE(crossing.emplace(pairs.kind[b].crossing + k, j).second);
         }
@@ -116,7 +120,7 @@ TEST(PairBlocks, KnowTheirConstantsAndWhereTheyCross) {
   std::map<std::uint32_t, std::uint32_t> announced;
   for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
     for (std::uint32_t k = pairs.chunk[c].incoming_begin; k < pairs.chunk[c].incoming_end; ++k) {
-      EXPECT_EQ(pairs.incoming[k].row / chunk_rows, c);
+      EXPECT_EQ(pairs.incoming[k].row / rows, c);
       EXPECT_TRUE(announced.emplace(pairs.incoming[k].crossing, pairs.incoming[k].row).second);
     }
   EXPECT_EQ(announced, crossing);

@@ -67,7 +67,7 @@ auto contents(const PairContacts& pairs, std::size_t grains) {
 }
 
 TEST(Regroup, MovesPairsWithAllTheyHaveIntoFewerBlocks) {
-  for (const std::size_t n : {std::size_t{2}, std::size_t{40}, 3 * chunk_rows + 50})
+  for (const std::size_t n : {std::size_t{2}, std::size_t{40}, std::size_t{1586}})
     for (const double touching : {0.0, 0.02, 0.3, 1.0}) {
       const support::Scene s = support::random_scene(n, n);
       const PairContacts before = rattled(s, touching, 3);
@@ -96,7 +96,7 @@ TEST(Regroup, MovesPairsWithAllTheyHaveIntoFewerBlocks) {
 
 // What blocks are known by is what it would be if they had been made so: a run that is resumed makes them anew.
 TEST(Regroup, LeavesBlocksAsTheyWouldBeMadeOfTheirLanes) {
-  const std::size_t n = 3 * chunk_rows + 50;
+  constexpr std::size_t n = 1586;  // four chunks
   const support::Scene s = support::random_scene(n, 4);
   PairContacts pairs = rattled(s, 0.2, 5);
   regroup(pairs, s.table(), s.materials, resolution);
@@ -122,7 +122,7 @@ TEST(Regroup, LeavesBlocksAsTheyWouldBeMadeOfTheirLanes) {
 
 // A pair that is left alone until the odometer comes to a place is not left alone for longer.
 TEST(Regroup, WakesNoPairLater) {
-  const std::size_t n = 3 * chunk_rows + 50;
+  constexpr std::size_t n = 1586;  // four chunks
   const support::Scene s = support::random_scene(n, 6);
   const PairContacts before = rattled(s, 0.1, 7);
   PairContacts after = before;

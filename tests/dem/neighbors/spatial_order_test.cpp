@@ -71,23 +71,22 @@ TEST(SpatialOrder, GroupsAreBoxesThatDoNotOverlap) {
     }
 }
 
-// What the order is for: of grains side by side in a cube of 32^3, most are in the same chunk of rows, while in an
+// What the order is for: of grains side by side in a cube of 32^3, most are in the same group of rows, a block of 8^3, while in an
 // order row by row of the lattice none of the neighbours in z is.
 TEST(SpatialOrder, KeepsNeighboursTogether) {
   constexpr std::size_t side = 32;
   std::vector<Vec3> x;
   for (std::size_t k = 0; k < side * side * side; ++k)
     x.emplace_back(double(k % side), double(k / side % side), double(k / side / side));
-  const std::vector<std::uint32_t> order = spatial_order(x, chunk_rows);
-  std::vector<std::size_t> chunk(x.size());
-  for (std::size_t r = 0; r < order.size(); ++r) chunk[order[r]] = r / chunk_rows;
-  // A chunk is a block of 8 x 8 x 8 grains.
-  static_assert(chunk_rows == 512);
+  constexpr std::size_t group = 8 * 8 * 8;
+  const std::vector<std::uint32_t> order = spatial_order(x, group);
+  std::vector<std::size_t> block(x.size());
+  for (std::size_t r = 0; r < order.size(); ++r) block[order[r]] = r / group;
   for (const std::size_t next : {std::size_t{1}, side, side * side}) {
     std::size_t together = 0, pairs = 0;
     for (std::size_t k = 0; k + next < x.size(); ++k)
       if (k / next % side + 1 < side) {
-        together += chunk[k] == chunk[k + next];
+        together += block[k] == block[k + next];
         ++pairs;
       }
     // Of 31 neighbours along a row 28 are in one block.

@@ -66,7 +66,7 @@ dem::Setup boxed(double half) {
 // Enough chunks for three threads to take several each, some of which wait for others' forces. Every contact at every step, and at its own rate.
 TEST(Simulation, GivesTheSameBytesForAnyNumberOfThreads) {
   const Particles grains = support::packed_cube(12, 1e-7, 0.1, 7);
-  ASSERT_GT(chunks_of(grains.size()), 3u);
+  ASSERT_GT(RowChunks(grains.size()).count(), 3u);
   for (const std::uint8_t levels : {0, 3}) {
     std::vector<State> ends;
     for (const int threads : {1, 2, 3}) {
@@ -202,7 +202,7 @@ TEST(Simulation, RefusesAStateThatDoesNotFitTogether) {
   Simulation sim(boxed(4.162e-3), fresh(support::packed_cube(9, 1e-7, 0.1, 3)));
   sim.advance(100);
   const State sound = sim.state();
-  ASSERT_GT(sound.particles.size(), chunk_rows);
+  ASSERT_GT(RowChunks(sound.particles.size()).count(), 1u);
   using Layout = State::Layout;
   const std::vector<std::function<void(Layout&)>> damages{
       [](Layout& l) { l.order[0] = l.order[1]; },
