@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "libdem/contact/chunk_shares.hpp"
 #include "libdem/contact/due_list.hpp"
 #include "libdem/contact/rows.hpp"
 #include "libdem/errors.hpp"
@@ -913,34 +914,6 @@ void wait_until(Condition condition) {
 
 bool pending(PairContacts::Chunk& chunk) { return std::atomic_ref(chunk.pending).load(std::memory_order_acquire) != 0; }
 
-// Due chunks that one thread begins with, rows of ForceInput::due_chunks: neighbours in space, so that it finds in its own caches what pairs
-// that cross chunks share, and the same at every step, so that it finds there what it wrote. It takes them from the first on; others, when
-// they have none left, from the last on.
-class Share {
- public:
-  void assign(std::uint32_t begin, std::uint32_t end) { left_.store(pack(begin, end), std::memory_order_relaxed); }
-  std::optional<std::uint32_t> take_first() {
-    return take([](std::uint32_t& begin, std::uint32_t&) { return begin++; });
-  }
-  std::optional<std::uint32_t> take_last() {
-    return take([](std::uint32_t&, std::uint32_t& end) { return --end; });
-  }
-
- private:
-  static std::uint64_t pack(std::uint32_t begin, std::uint32_t end) { return std::uint64_t{end} << 32 | begin; }
-  template <class Which>
-  std::optional<std::uint32_t> take(Which which) {
-    std::uint64_t seen = left_.load(std::memory_order_relaxed);
-    while (true) {
-      std::uint32_t begin = std::uint32_t(seen), end = std::uint32_t(seen >> 32);
-      if (begin == end) return std::nullopt;
-      const std::uint32_t taken = which(begin, end);
-      if (left_.compare_exchange_weak(seen, pack(begin, end), std::memory_order_relaxed)) return taken;
-    }
-  }
-  alignas(64) std::atomic<std::uint64_t> left_;
-};
-
 enum class Progress : std::uint8_t { to_evaluate, waiting, taken };  // of a chunk; taken by whoever finishes it
 
 // Each thread takes the next chunk of its share, evaluates it and finishes it. If chunks that send forces to it are still to be evaluated, it
@@ -952,16 +925,14 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
   const std::size_t count = in.due_chunks.size();
   for (const std::uint32_t number : in.due_chunks) pairs.chunk[number].pending = 1;
   const std::size_t threads = count >= few_chunks ? std::size_t(omp_get_max_threads()) : 1;
-  std::vector<Share> shares(threads);
   std::vector<std::atomic<Progress>> progress(count);
   std::vector<std::unique_ptr<ForceSheet>> kept(count);  // of chunks that wait
   out.sheets.prepare(threads);
   std::atomic<std::size_t> finished = 0;
-  const auto row_of = [&](std::size_t thread) {
+  ChunkShares shares(threads, [&](std::size_t thread) {
     const std::size_t chunk = pairs.chunk.size() * thread / threads;
-    return std::uint32_t(std::ranges::lower_bound(in.due_chunks, chunk) - in.due_chunks.begin());
-  };
-  for (std::size_t t = 0; t < threads; ++t) shares[t].assign(row_of(t), row_of(t + 1));
+    return std::ranges::lower_bound(in.due_chunks, chunk) - in.due_chunks.begin();
+  });
 #pragma omp parallel num_threads(int(threads))
   {
     const std::size_t me = std::size_t(omp_get_thread_num());
@@ -986,25 +957,21 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
       }
       return true;
     };
-    for (std::size_t turn = 0; turn < threads; ++turn) {
-      Share& share = shares[(me + turn) % threads];
-      while (const std::optional<std::uint32_t> taken = turn == 0 ? share.take_first() : share.take_last()) {
-        const std::uint32_t k = *taken;
-        const std::uint32_t number = in.due_chunks[k];
-        const std::optional<std::uint32_t> next = k + 1 < count ? std::optional(in.due_chunks[k + 1]) : std::nullopt;
-        evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, next, ChunkOutput{*sheet, out.asked, in.chunks});
-        std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
-        if (ready(k)) {
-          progress[k].store(Progress::taken, std::memory_order_relaxed);
-          finish_with(k, *sheet);
-        } else {
-          waiting.push_back(k);
-          kept[k] = std::exchange(sheet, out.sheets.take());
-          progress[k].store(Progress::waiting, std::memory_order_release);
-        }
-        std::erase_if(waiting, finish_if_ready);
+    shares.take(me, [&](std::uint32_t k) {
+      const std::uint32_t number = in.due_chunks[k];
+      const std::optional<std::uint32_t> next = k + 1 < count ? std::optional(in.due_chunks[k + 1]) : std::nullopt;
+      evaluate_chunk<Law, Keep>(law, in, pairs, walls, number, next, ChunkOutput{*sheet, out.asked, in.chunks});
+      std::atomic_ref(pairs.chunk[number].pending).store(0, std::memory_order_release);
+      if (ready(k)) {
+        progress[k].store(Progress::taken, std::memory_order_relaxed);
+        finish_with(k, *sheet);
+      } else {
+        waiting.push_back(k);
+        kept[k] = std::exchange(sheet, out.sheets.take());
+        progress[k].store(Progress::waiting, std::memory_order_release);
       }
-    }
+      std::erase_if(waiting, finish_if_ready);
+    });
     // Awake until all is done, as at the end of the region OpenMP would soon put the thread to sleep, and waking it takes longer than others
     // need.
     wait_until([&] {

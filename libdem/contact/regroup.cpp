@@ -1,6 +1,10 @@
 #include "libdem/contact/regroup.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
+
+#include "libdem/contact/chunk_shares.hpp"
 
 namespace dem {
 namespace {
@@ -146,16 +150,18 @@ void fill(PairContacts& pairs, const Range& range, const GrainTable& grains, con
 
 void regroup(PairContacts& pairs, const GrainTable& grains, const MaterialTable& materials, const Resolution& resolution) {
   bool crossing_moved = false;
-#pragma omp parallel reduction(|| : crossing_moved)
+  const std::size_t chunks = pairs.chunk.size(), threads = std::size_t(omp_get_max_threads());
+  ChunkShares shares(threads, [&](std::size_t thread) { return chunks * thread / threads; });  // as those who evaluate them
+#pragma omp parallel num_threads(int(threads)) reduction(|| : crossing_moved)
   {
     Space space;
-#pragma omp for schedule(static)  // so that most chunks stay with the thread that evaluates them
-    for (std::size_t c = 0; c < pairs.chunk.size(); ++c)
+    shares.take(std::size_t(omp_get_thread_num()), [&](std::uint32_t c) {
       for_each_range(pairs, pairs.chunk[c], [&](const Range& range) {
         if (!find_order(pairs, range, grains, space)) return;
         fill(pairs, range, grains, materials, resolution, space);
         crossing_moved |= range.begin >= pairs.chunk[c].inner_end;
       });
+    });
   }
   if (crossing_moved) connect_chunks(pairs, grains.size());
 }
