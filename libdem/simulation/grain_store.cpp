@@ -51,6 +51,7 @@ void lay_out(GrainStore& grains, std::vector<std::uint32_t> order) {
 }
 
 void show(GrainStore& grains) {
+  if (std::exchange(grains.shown, true)) return;
   Particles& p = grains.caller;
 #pragma omp parallel for schedule(static)
   for (std::size_t r = 0; r < grains.size(); ++r) {

@@ -13,6 +13,7 @@ namespace dem {
 struct GrainStore {
   // In the caller's order. Where the grains are and how they move follows the rows at show().
   Particles caller;
+  bool shown = true;  // it does; false once rows have moved
   std::vector<double> caller_mass, caller_inertia;  // kg, kg m^2
 
   // In the order of rows.
@@ -38,7 +39,7 @@ GrainStore make_grain_store(Particles particles, const std::vector<Material>& ma
 // Lays the rows out anew: row r is the caller's row order[r]. Forces are zero, `listed` is left to whoever builds the lists.
 void lay_out(GrainStore& grains, std::vector<std::uint32_t> order);
 
-// Writes positions and velocities of the rows back into the caller's order.
+// Writes positions and velocities of the rows back into the caller's order, if they have moved since.
 void show(GrainStore& grains);
 
 }  // namespace dem

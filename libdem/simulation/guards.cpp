@@ -136,10 +136,13 @@ double largest_eigenvalue(const GuardInput& in, std::size_t i) {
 std::vector<double> traces(const GuardInput& in) {
   const bool friction =
       with_part<TangentialLaws>(in.setup.law.tangential, [](auto part) { return part.has_spring; });
-  std::vector<double> trace(in.id.size(), 0.0);
+  struct Stiffness {
+    double normal = 0, tangential = 0;  // N/m, sums over the contacts of a grain
+  };
+  std::vector<Stiffness> sum(in.id.size());
   const auto add = [&](std::size_t i, const PairConstants<double>& c, double radius) {
-    const double tangential = friction ? 16 * c.effective_shear * radius : 0, lever = in.grains[i].radius();
-    trace[i] += (2 * c.effective_modulus * radius + tangential) / in.mass[i] + tangential * lever * lever / in.inertia[i];
+    sum[i].normal += 2 * c.effective_modulus * radius;
+    if (friction) sum[i].tangential += 16 * c.effective_shear * radius;
   };
   for (std::size_t lane = 0; lane < in.pairs.lanes(); ++lane) {
     if (!in.pairs.acts(lane)) continue;
@@ -150,6 +153,11 @@ std::vector<double> traces(const GuardInput& in) {
   for (const WallCandidate& c : in.walls.candidate)
     for (const WallContact& w : in.walls.contacts(c))
       if (w.acts()) add(c.particle, in.materials.pair[c.material_pair], w.memory.contact_radius);
+  std::vector<double> trace(sum.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const double lever = in.grains[i].radius();
+    trace[i] = (sum[i].normal + sum[i].tangential) / in.mass[i] + sum[i].tangential * lever * lever / in.inertia[i];
+  }
   return trace;
 }
 

@@ -223,6 +223,7 @@ struct Simulation::Engine {
 
   // Forces on every grain that is due; gives it its level and, if asked to, moves it.
   void evaluate(bool look, bool record, bool move) {
+    if (move) grains.shown = false;
     const auto finish = [&](std::size_t d, ForceSheet& sheet) {
       setup.levels == 0 ? finish_chunk<false>(d, sheet, move) : finish_chunk<true>(d, sheet, move);
     };
@@ -519,6 +520,7 @@ struct Simulation::Engine {
 
   // Condition: all are due.
   void move_all() {
+    grains.shown = false;
 #pragma omp parallel for schedule(static) if (due_chunks.size() >= few_chunks)
     for (std::size_t c = 0; c < due_chunks.size(); ++c) {
       const Columns on = columns();
