@@ -300,7 +300,6 @@ void for_each_number(Report& r, Visit visit) {
   visit("solid_fraction", r.solid_fraction);
   visit("coordination", r.coordination);
   visit("mechanical_coordination", r.mechanical_coordination);
-  visit("largest_overlap", r.largest_overlap);
   visit("top_m", r.top);
   visit("probe_interval_s", r.probe_interval);
   visit("largest_displacement_m", r.largest_displacement);
@@ -448,6 +447,7 @@ std::optional<dem::SettledBed> read_bed(const std::string& path, const std::stri
   bed.state = read_state(f);
   dem::BedReport& r = bed.report;
   r.grains = bed.state.particles.size();
+  r.overlaps = dem::overlaps_of(bed.state);
   for_each_number(r, [&f](const char* name, double& value) { value = f.attribute<double>("/", name); });
   r.rattlers = f.attribute<std::uint64_t>("/", "rattlers");
   r.unsupported = f.attribute<std::uint64_t>("/", "unsupported");

@@ -10,12 +10,19 @@
 namespace jamscope {
 namespace {
 
+std::string overlaps_text(const dem::Overlaps& o) {
+  std::string text = fmt::format("largest overlap {:.2g} R", o.largest);
+  if (o.squeezed > 0)
+    text += fmt::format(" ({} squeezed between walls: {:.2g} R)", o.squeezed == 1 ? "1 grain" : fmt::format("{} grains", o.squeezed), o.largest_squeezed);
+  return text;
+}
+
 std::string bed_text(const dem::BedReport& r) {
   return fmt::format(
-      "{} grains, solid fraction {:.3f}, coordination {:.2f} ({:.2f} with walls and without {} rattlers), largest overlap "
-      "{:.2g} R, top at {:.2f} mm; at rest: set free for {:.2g} ms, {} grains are unsupported, none moved by more than {:.2g} um "
+      "{} grains, solid fraction {:.3f}, coordination {:.2f} ({:.2f} with walls and without {} rattlers), {}, "
+      "top at {:.2f} mm; at rest: set free for {:.2g} ms, {} grains are unsupported, none moved by more than {:.2g} um "
       "(free fall: {:.2g} um), kinetic energy {:.2g} J (rest: below {:.2g} J)",
-      r.grains, r.solid_fraction, r.coordination, r.mechanical_coordination, r.rattlers, r.largest_overlap, 1e3 * r.top,
+      r.grains, r.solid_fraction, r.coordination, r.mechanical_coordination, r.rattlers, overlaps_text(r.overlaps), 1e3 * r.top,
       1e3 * r.probe_interval, r.unsupported, 1e6 * r.largest_displacement, 1e6 * r.free_fall, r.kinetic_energy, r.rest_scale);
 }
 

@@ -230,10 +230,7 @@ BedReport report_on(const RestProbe& probe, const BedRegion& region, const Bed& 
   const std::vector<std::uint32_t> contacts = contact_counts(view);
   r.mechanical_coordination = mechanical_coordination(contacts);
   r.rattlers = std::size_t(std::count_if(contacts.begin(), contacts.end(), [](std::uint32_t c) { return c < 2; }));
-  for (const PairRecord& c : view.pairs)
-    r.largest_overlap = std::max(r.largest_overlap, c.overlap / std::min(view.radius[c.i], view.radius[c.j]));
-  for (const WallRecord& c : view.wall_pairs)
-    r.largest_overlap = std::max(r.largest_overlap, c.overlap / view.radius[c.i]);
+  r.overlaps = overlaps_of(probe.state);
   for (const Vec3& x : view.position) r.top = std::max(r.top, x.z());
   r.unsupported = probe.unsupported;
   r.probe_interval = probe.interval;

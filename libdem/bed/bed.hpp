@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "libdem/bed/packing.hpp"
 #include "libdem/case/bed_region.hpp"
 #include "libdem/simulation/simulation.hpp"
 
@@ -26,7 +27,7 @@ struct BedReport {
   double coordination = 0;             // 2 N_pp / N
   double mechanical_coordination = 0;  // contacts, walls included, per grain that has two or more
   std::size_t rattlers = 0;            // grains of no or one contact
-  double largest_overlap = 0;          // 1, over radius
+  Overlaps overlaps;                   // squeezed grains stay as far as pouring, when grains are soft, pressed them in
   double top = 0;                      // m, highest grain centre
   // Of the probe that showed the bed at rest.
   std::size_t unsupported = 0;      // grains; at most five in a thousand, or there would be no bed

@@ -39,4 +39,29 @@ double mechanical_coordination(const std::vector<std::uint32_t>& contacts) {
   return carriers > 0 ? sum / carriers : 0;
 }
 
+Overlaps overlaps_of(const State& state) {
+  const Particles& p = state.particles;
+  std::vector<State::WallPair> walls;
+  for (const State::WallPair& c : state.wall_pairs)
+    if (c.contact_radius > 0) walls.push_back(c);
+  std::stable_sort(walls.begin(), walls.end(), [](const State::WallPair& a, const State::WallPair& b) { return a.i < b.i; });
+  std::vector<bool> squeezed(p.size(), false);
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    for (std::size_t q = k + 1; q < walls.size() && walls[q].i == walls[k].i; ++q)
+      if (walls[k].normal.dot(walls[q].normal) < 0) squeezed[walls[k].i] = true;
+
+  Overlaps result;
+  result.squeezed = std::size_t(std::count(squeezed.begin(), squeezed.end(), true));
+  const auto add = [&](bool of_squeezed, double overlap) {
+    double& largest = of_squeezed ? result.largest_squeezed : result.largest;
+    largest = std::max(largest, overlap);
+  };
+  for (const State::Pair& c : state.pairs)
+    if (c.contact_radius > 0)
+      add(squeezed[c.i] || squeezed[c.j],
+          (p.radius[c.i] + p.radius[c.j] - (p.position[c.i] - p.position[c.j]).norm()) / std::min(p.radius[c.i], p.radius[c.j]));
+  for (const State::WallPair& c : walls) add(squeezed[c.i], (p.radius[c.i] - c.distance) / p.radius[c.i]);
+  return result;
+}
+
 }  // namespace dem

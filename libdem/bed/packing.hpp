@@ -18,4 +18,14 @@ std::vector<std::uint32_t> contact_counts(const View& view);
 // 43): (sum of contacts - N_1)/(N - N_0 - N_1) with N_0, N_1 grains of no and of one contact, the rattlers. 0 where all are.
 double mechanical_coordination(const std::vector<std::uint32_t>& contacts);
 
+// Overlaps of acting contacts over the radius, of a pair over the smaller one. Grains that walls press from two sides, their normals more than
+// 90 degrees apart, as between a blade's tip and the vessel, are squeezed: friction may hold them pressed by more than the weight of the bed
+// does others. Their contacts, with grains too, count for them alone.
+struct Overlaps {
+  double largest = 0;           // 1, of contacts of other grains
+  std::size_t squeezed = 0;     // grains
+  double largest_squeezed = 0;  // 1, of contacts of squeezed grains; 0 where there are none
+};
+Overlaps overlaps_of(const State& state);
+
 }  // namespace dem

@@ -35,6 +35,53 @@ TEST(Packing, RattlersDoNotCountForTheMechanicalCoordination) {
   EXPECT_EQ(mechanical_coordination({}), 0);
 }
 
+// Two walls face each other across the first grain, two meet at the second's corner: only the first is squeezed, and what it touches counts
+// for it.
+TEST(Packing, OverlapsOfSqueezedGrainsAreToldApart) {
+  State s;
+  s.particles.add(1, 0, 0.5, Vec3(0, 0, 0));
+  s.particles.add(2, 0, 0.25, Vec3(0.7, 0, 0));
+  s.particles.add(3, 0, 0.5, Vec3(0.7, 0.745, 0));
+  s.particles.add(4, 0, 0.5, Vec3(0.7, 1.74, 0));
+  const auto pair = [&](std::uint32_t i, std::uint32_t j, double contact_radius) {
+    State::Pair c{};
+    c.i = i;
+    c.j = j;
+    c.contact_radius = contact_radius;
+    s.pairs.push_back(c);
+  };
+  const auto wall = [&](std::uint32_t i, const Vec3& normal, double distance, double contact_radius = 1) {
+    State::WallPair c{};
+    c.i = i;
+    c.normal = normal;
+    c.distance = distance;
+    c.contact_radius = contact_radius;
+    s.wall_pairs.push_back(c);
+  };
+  pair(1, 2, 1);
+  pair(2, 3, 1);
+  wall(1, Vec3(0, 0, -1), 0.249);
+  wall(3, Vec3(1, 0, 0), 0.499);
+  Overlaps o = overlaps_of(s);
+  EXPECT_NEAR(o.largest, 0.02, 1e-14);  // 0.005 of 0.25
+  EXPECT_EQ(o.squeezed, 0u);
+  EXPECT_EQ(o.largest_squeezed, 0);
+
+  wall(1, Vec3(1, 0, 0), 0.24);                 // at right angles: a corner
+  wall(0, Vec3(0, -1, 0), 0.45);
+  wall(0, Vec3(0.1, 0.99, 0), 0.4, 0);          // does not act
+  o = overlaps_of(s);
+  EXPECT_NEAR(o.largest, 0.1, 1e-14);
+  EXPECT_EQ(o.squeezed, 0u);
+
+  s.wall_pairs.back().contact_radius = 1;
+  pair(0, 1, 1);                                // 0.05 of 0.25, with the squeezed grain
+  o = overlaps_of(s);
+  EXPECT_EQ(o.squeezed, 1u);
+  EXPECT_NEAR(o.largest_squeezed, 0.2, 1e-14);  // the wider of its contacts with walls and with a grain
+  EXPECT_NEAR(o.largest, 0.04, 1e-14);          // 0.01 of 0.25 at the corner
+}
+
 TEST(Packing, RegionsKnowTheirInside) {
   const CylinderRegion circle{2};
   const BoxRegion box{-1, 3, 0, 1};
