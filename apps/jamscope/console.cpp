@@ -52,10 +52,17 @@ std::string duration_text(double seconds) {
   return fmt::format("{} d {} h", minutes / 1440, minutes % 1440 / 60);
 }
 
-std::string progress_text(const Progress& p, double left) {
+std::string progress_text(const Progress& p, double left, std::size_t columns) {
   std::string text = fmt::format("{} {:.5g}/{:.5g} {}", p.stage, p.done, p.total, p.unit);
-  const auto add = [&](const std::string& part) { text += "  " + part; };
-  if (p.step) add(fmt::format("step {}", *p.step));
+  bool room = true;
+  const auto add = [&](const std::string& part) {
+    room = room && text.size() + 2 + part.size() <= columns;
+    if (room) text += "  " + part;
+  };
+  if (std::isfinite(left)) add((p.at_most ? "left at most " : "left ") + duration_text(left));
+  if (p.jammed) add(fmt::format("jammed {}", *p.jammed));
+  if (p.events) add(fmt::format("events {}", *p.events));
+  if (std::isfinite(p.largest_force)) add(fmt::format("force {:.3g} N", p.largest_force));
   if (std::isfinite(p.particle_steps_per_second)) {
     add(fmt::format("{:.2g} grain steps/s", p.particle_steps_per_second));
   } else if (std::isfinite(p.steps_per_second)) {
@@ -63,11 +70,8 @@ std::string progress_text(const Progress& p, double left) {
   }
   if (p.contacts) add(fmt::format("contacts {}", *p.contacts));
   if (std::isfinite(p.largest_overlap)) add(fmt::format("overlap {:.2g} % R", 100 * p.largest_overlap));
-  if (std::isfinite(p.largest_force)) add(fmt::format("force {:.3g} N", p.largest_force));
-  if (p.jammed) add(fmt::format("jammed {}", *p.jammed));
-  if (p.events) add(fmt::format("events {}", *p.events));
-  if (std::isfinite(left)) add((p.at_most ? "left at most " : "left ") + duration_text(left));
-  return text;
+  if (p.step) add(fmt::format("step {}", *p.step));
+  return text.substr(0, columns);
 }
 
 std::string progress_json(const Progress& p, double elapsed, double left) {
@@ -126,10 +130,9 @@ void Console::print(const Progress& p) {
   if (format_ == LogFormat::jsonl) {
     fmt::print(out_, "{}\n", progress_json(p, elapsed, left));
   } else {
-    std::string text = progress_text(p, left);
+    std::string text = progress_text(p, left, terminal_ ? terminal_columns(out_) - 1 : std::string::npos);
     if (terminal_) {
       // The cursor stays on the line; what the last, longer line left over is overwritten.
-      text.resize(std::min(text.size(), terminal_columns(out_) - 1));
       const std::size_t length = text.size();
       if (length < shown_) text.append(shown_ - length, ' ');
       shown_ = length;

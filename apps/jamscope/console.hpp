@@ -28,10 +28,10 @@ struct Progress {
 };
 
 // The line for people, for example
-//   simulate 0.0124/2 s  step 248000  4.1e+06 particle steps/s  contacts 91234  overlap 3.1 % R  force 412 N  jammed 2
-//   events 7  left 3 h 12 min
-// left: seconds that remain; NaN: not known.
-std::string progress_text(const Progress& p, double left);
+//   simulate 0.0124/2 s  left 3 h 12 min  jammed 2  events 7  force 412 N  4.1e+06 grain steps/s  contacts 91234
+//   overlap 3.1 % R  step 248000
+// left: seconds that remain; NaN: not known. Of what does not fit into the columns of a terminal the last parts are left out.
+std::string progress_text(const Progress& p, double left, std::size_t columns = std::string::npos);
 
 // The line for machines: {"log":"progress","stage":"simulate","done":0.0124,...}.
 std::string progress_json(const Progress& p, double elapsed, double left);

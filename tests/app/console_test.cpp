@@ -30,14 +30,23 @@ Progress sample() {
 TEST(Progress, TextHasEverythingThatIsKnownAndNothingElse) {
   EXPECT_EQ(
       progress_text(sample(), 11520),
-      "simulate 0.0124/2 s  step 248000  4.1e+06 grain steps/s  contacts 91234  overlap 3.1 % R  jammed 2  events 7  "
-      "left 3 h 12 min");
+      "simulate 0.0124/2 s  left 3 h 12 min  jammed 2  events 7  4.1e+06 grain steps/s  contacts 91234  overlap 3.1 % R  "
+      "step 248000");
   Progress bare;
   bare.stage = "read";
   bare.unit = "frames";
   bare.done = 3;
   bare.total = 10;
   EXPECT_EQ(progress_text(bare, std::numeric_limits<double>::quiet_NaN()), "read 3/10 frames");
+}
+
+// A narrow terminal shows whole parts, how long it takes first.
+TEST(Progress, TextFitsItsColumns) {
+  EXPECT_EQ(progress_text(sample(), 11520, 79), "simulate 0.0124/2 s  left 3 h 12 min  jammed 2  events 7  4.1e+06 grain steps/s");
+  const std::string shortest = "simulate 0.0124/2 s  left 3 h 12 min";
+  EXPECT_EQ(progress_text(sample(), 11520, shortest.size()), shortest);
+  EXPECT_EQ(progress_text(sample(), 11520, shortest.size() - 1), "simulate 0.0124/2 s");  // nothing after what has no room
+  EXPECT_EQ(progress_text(sample(), 11520, 8), "simulate");
 }
 
 TEST(Progress, JsonIsOneObjectOfWhatIsKnown) {
@@ -70,7 +79,7 @@ TEST(Console, WritesPlainLinesWhereThereIsNoTerminal) {
   }
   std::fclose(file);
   const std::string text = text_of(path);
-  EXPECT_THAT(text, testing::StartsWith("hello\nwarning: careful\nsimulate 0.0124/2 s  step 248000"));
+  EXPECT_THAT(text, testing::StartsWith("hello\nwarning: careful\nsimulate 0.0124/2 s  jammed 2"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
   EXPECT_EQ(text.find('\r'), std::string::npos);
 }
