@@ -28,7 +28,7 @@
 #include "apps/jamscope/report_command.hpp"
 #include "apps/jamscope/simulate.hpp"
 #include "apps/jamscope/toml_reader.hpp"
-#include "jamscope/version.hpp"
+#include "apps/jamscope/version.hpp"
 #include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
 

@@ -17,7 +17,7 @@
 #include "apps/jamscope/case_file.hpp"
 #include "apps/jamscope/derived_table.hpp"
 #include "apps/jamscope/errors.hpp"
-#include "jamscope/version.hpp"
+#include "apps/jamscope/version.hpp"
 #include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
 #include "libjam/events/peaks.hpp"

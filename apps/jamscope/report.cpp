@@ -8,7 +8,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "jamscope/version.hpp"
+#include "apps/jamscope/version.hpp"
 
 namespace jamscope {
 

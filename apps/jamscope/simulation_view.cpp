@@ -1,11 +1,11 @@
 #include "apps/jamscope/simulation_view.hpp"
 
 #include <algorithm>
-#include <jamscope/version.hpp>
 #include <numeric>
 
 #include "apps/jamscope/outputs.hpp"
 #include "apps/jamscope/sha256.hpp"
+#include "apps/jamscope/version.hpp"
 #include "libjam/jamming/jam_criteria.hpp"
 
 namespace jamscope {

@@ -2,11 +2,11 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <jamscope/version.hpp>
 #include <thread>
 
 #include "apps/jamscope/errors.hpp"
 #include "apps/jamscope/units.hpp"
+#include "apps/jamscope/version.hpp"
 #include "apps/python/bindings.hpp"
 #include "libdem/errors.hpp"
 #include "libjam/errors.hpp"
