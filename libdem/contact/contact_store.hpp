@@ -162,6 +162,11 @@ struct WallContacts {
   double skin = 0;                         // m, how far beyond a grain's surface the candidate parts reach
 
   std::span<const WallContact> contacts(const WallCandidate& c) const { return {&contact[c.contact_begin], c.size}; }
+  // Of a chunk of grains.
+  std::span<Chunk> chunks_of(std::size_t grains) { return std::span(chunk).subspan(chunk_begin[grains], chunk_begin[grains + 1] - chunk_begin[grains]); }
+  std::span<const Chunk> chunks_of(std::size_t grains) const {
+    return std::span(chunk).subspan(chunk_begin[grains], chunk_begin[grains + 1] - chunk_begin[grains]);
+  }
 };
 
 }  // namespace dem

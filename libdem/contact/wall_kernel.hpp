@@ -13,7 +13,7 @@ namespace dem::kernel {
 // A contact that its wall no longer has: it broke, or its feature gave way to another while it was loaded and what it stored
 // is lost. `advance`, s, is the time since its last evaluation.
 template <class Law>
-void book_end(const Law& law, const WallContact& contact, const LastForces& last, const PairConstants<double>& c,
+static void book_end(const Law& law, const WallContact& contact, const LastForces& last, const PairConstants<double>& c,
               const GrainRow& grain, double advance, LedgerSums& sums) {
   const Vec3 u = grain.velocity() + (last.arm_i * grain.angular_velocity()).cross(last.normal) - last.wall_velocity;
   const double expected_overlap = grain.radius() - contact.touch.distance + advance * u.dot(last.normal);
@@ -30,7 +30,7 @@ void book_end(const Law& law, const WallContact& contact, const LastForces& last
 // where the grain rolled from one feature to its neighbour, the remaining place with the most similar normal. Calls
 // ended(contact, its last forces) for formed contacts that nothing inherits.
 template <class Ended>
-void inherit(WallContacts& walls, WallCandidate& candidate, const std::vector<WallTouch>& touches, Ended ended) {
+static void inherit(WallContacts& walls, WallCandidate& candidate, const std::vector<WallTouch>& touches, Ended ended) {
   const std::size_t old_size = candidate.size;
   WallContact* const now = &walls.contact[candidate.contact_begin];
   LastForces* const last = walls.last.empty() ? nullptr : &walls.last[candidate.contact_begin];
@@ -108,7 +108,7 @@ struct WallSlot {
 };
 
 template <class Law, bool Keep>
-JAMSCOPE_FLATTEN void evaluate_wall_block(const Law& law, const ForceInput& in, const std::array<WallSlot, pack_width>& slot,
+JAMSCOPE_FLATTEN static void evaluate_wall_block(const Law& law, const ForceInput& in, const std::array<WallSlot, pack_width>& slot,
                                           std::size_t count, WallContacts::Chunk& chunk, const ChunkOutput& out,
                                           LedgerSums& sums) {
   const WallPose& pose = in.poses[chunk.wall];
@@ -247,7 +247,7 @@ inline void ask_for_what_it_touches(const ForceInput& in, const WallContacts& wa
 }
 
 template <class Law, bool Keep>
-void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& walls, WallContacts::Chunk& chunk,
+static void evaluate_wall_chunk(const Law& law, const ForceInput& in, WallContacts& walls, WallContacts::Chunk& chunk,
                          const ChunkOutput& out) {
   std::vector<WallTouch>& touches = chunk.touches;
   const Wall& wall = in.walls[chunk.wall];

@@ -45,6 +45,7 @@ class RowChunks {
  public:
   static constexpr std::size_t least_rows = 512, most_rows = 2048;
   static constexpr std::size_t many = 64;
+  static constexpr std::size_t few = 3;  // below this many waking other threads costs more than they save
 
   explicit RowChunks(std::size_t grains)
       : grains_(grains), bits_(std::bit_width(std::clamp(grains / many, least_rows, most_rows)) - 1) {}
