@@ -171,7 +171,7 @@ static bool evaluate_lanes(const Law& law, const ForceInput& in, PairContacts& p
   if (rolling_spring) springs.rolling = load(pairs.rolling[number].torque, lane);
   const Mask<Pack> touched = springs.contact_radius > Pack(0.0);
   const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
-  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Interval<Pack>(advance, 1 / advance));
+  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Interval<Pack>(advance, 1 / advance, 1 / advance_of(in, 0)));
 
   store(only(hold, springs.tangential), block.spring, lane);
   store(only(hold, springs.contact_radius), block.contact_radius, lane);

@@ -70,8 +70,10 @@ inline constexpr std::size_t constants_per_contact = contact_constants<double>.s
 template <class Real>
 struct Interval {
   Real length, rate;
-  Interval(const Real& l) : length(l), rate(1.0 / l) {}
-  Interval(const Real& l, const Real& r) : length(l), rate(r) {}
+  Real finest_rate;  // 1/s, of the run's step, where contacts step at their own rate; else `rate`
+  Interval(const Real& l) : Interval(l, Real(1.0 / l)) {}
+  Interval(const Real& l, const Real& r) : Interval(l, r, r) {}
+  Interval(const Real& l, const Real& r, const Real& finest) : length(l), rate(r), finest_rate(finest) {}
 };
 
 // What a contact remembers between steps.

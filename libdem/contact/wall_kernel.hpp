@@ -163,8 +163,8 @@ JAMSCOPE_FLATTEN static void evaluate_wall_block(const Law& law, const ForceInpu
                         gather([&](std::size_t k) { return slot[k].contact->memory.contact_radius; })};
   const Mask<Pack> touched = springs.contact_radius > Pack(0.0);
   const Mask<Pack> hold = holds(law, touch.overlap, touched, c);
-  const ContactForce<Pack> f = evaluate(law, touch, c, springs,
-                                        Interval<Pack>(gather([&](std::size_t k) { return slot[k].advance; })));
+  const Pack advance = gather([&](std::size_t k) { return slot[k].advance; });
+  const ContactForce<Pack> f = evaluate(law, touch, c, springs, Interval<Pack>(advance, Pack(1.0 / advance), Pack(1 / advance_of(in, 0))));
   const Triple<Pack> tangential = f.tangential.elastic + f.tangential.viscous;
   const Pack pushed = f.normal.elastic + f.damping;
   const Triple<Pack> force = subtract_product(tangential, touch.normal, pushed);

@@ -5,7 +5,9 @@
 // A torque of constant size chatters about w = 0 and, at large forces, turns the spin around within a step and grows without
 // bound. So the torque of one contact takes away at most a tenth of a spin in a step: |tau| dt <= 0.1 I* |w|. A tenth, because
 // a grain has up to about twelve contacts and their sum must not turn the spin around either. In a jam that is far from the whole
-// torque (full_torque_force()); an elastic_plastic one has no such limit.
+// torque (full_torque_force()), and how fast jammed grains roll under their load depends on it; an elastic_plastic one has no such limit.
+// So that contacts that step at their own rate resist alike, the limit is that of the run's step, as long as no more than a fifth of a spin
+// goes in the contact's own: the spins of equal grains that turn against n neighbours each grow from n = 2/share on.
 #pragma once
 #include <string_view>
 
@@ -15,7 +17,14 @@ namespace dem {
 
 namespace rolling {
 
-inline constexpr double largest_share_of_spin = 0.1;
+inline constexpr double largest_share_of_spin = 0.1;         // in a step of the run
+inline constexpr double largest_share_in_own_step = 0.2;  // in a longer one of a contact
+
+// 1/s, the share of a spin that may be taken away in a time.
+template <class Real>
+Real largest_share_rate(const Interval<Real>& dt) {
+  return smaller(Real(largest_share_of_spin * dt.finest_rate), Real(largest_share_in_own_step * dt.rate));
+}
 
 template <class Real>
 Triple<Real> without_twist(const Triple<Real>& spin, const Triple<Real>& normal) {
@@ -28,7 +37,7 @@ Triple<Real> against(const Triple<Real>& w, const Real& size, const PairConstant
   const Real size2 = dot(w, w);
   const Mask<Real> turning = size2 > Real(0.0);
   const Real per_spin = size * inverse_root(size2);
-  const Real most = largest_share_of_spin * c.effective_inertia * dt.rate;
+  const Real most = c.effective_inertia * largest_share_rate(dt);
   return w * select(turning, -smaller(per_spin, most), Real(0.0));
 }
 
@@ -105,7 +114,7 @@ struct ElasticPlasticRolling {
     springs.rolling = trial * select(plastic, limit * inverse_root(size2), Real(1.0));
     // Explicit damping, and so no more than the largest share of the spin.
     const Real damping = smaller(2.0 * c.rolling_damping * square_root(3.5 * c.effective_inertia * stiffness),
-                                 Real(rolling::largest_share_of_spin * c.effective_inertia * dt.rate));
+                                 Real(c.effective_inertia * rolling::largest_share_rate(dt)));
     const Triple<Real> on_i = subtract_product(springs.rolling, w, select(plastic, Real(0.0), damping));
     const Mask<Real> stiff = stiffness > Real(0.0);
     const Real energy = select(stiff, 0.5 * dot(springs.rolling, springs.rolling) / select(stiff, stiffness, Real(1.0)), Real(0.0));

@@ -319,14 +319,19 @@ TEST(ConstantTorque, ResistsInFullUpToTheForceThatIsSaid) {
   Touch<double> touch{};
   touch.normal.z = -1;
   touch.spin_i.y = speed / radius;
-  const auto torque = [&](double load) {
+  const auto torque = [&](double load, double stride = 1) {
     NormalForce<double> normal{};
     normal.elastic = load;
     Springs<double> springs{};
-    return vec(ConstantTorque::evaluate(touch, c, normal, springs, Interval<double>(step)).on_i).y() / (-0.01 * radius * load);
+    const Interval<double> time(stride * step, 1 / (stride * step), 1 / step);
+    return vec(ConstantTorque::evaluate(touch, c, normal, springs, time).on_i).y() / (-0.01 * radius * load);
   };
   EXPECT_NEAR(torque(0.999 * force), 1, 1e-12);
   EXPECT_NEAR(torque(2 * force), 0.5, 1e-12);
+  // A contact that is evaluated at every second step resists alike; of a longer stride it may take a fifth of a spin.
+  EXPECT_NEAR(torque(0.999 * force, 2), 1, 1e-12);
+  EXPECT_NEAR(torque(2 * force, 2), 0.5, 1e-12);
+  EXPECT_NEAR(torque(2 * force, 4), 0.25, 1e-12);
 }
 
 // A composition that is compiled as one piece gives the bits of the same parts put together at run time.

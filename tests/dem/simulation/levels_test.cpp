@@ -153,12 +153,14 @@ TEST(Levels, ASqueezedGrainIsThatOfAFineStep) {
   EXPECT_NEAR(found.duration, right.duration, 0.005 * right.duration + 8.1e-7);
 }
 
-// A grain that rolls between a soft floor and a stiff plate that moves: the two contacts wait for different times. What the time steps make
-// must be small against the work that rolling takes; with springs stretched by the last velocity and not the mean it was 1.4 % of it here, and
-// more than all of it in a jam of some hundred newtons.
-TEST(Levels, AGrainRolledBetweenUnlikePlatesMakesNoEnergy) {
+// A grain that rolls between a soft floor and a stiff plate that moves: the two contacts wait for different times.
+struct Rolled {
+  double work = 0, made = 0, resistance = 0;  // J: of the plate, by the time steps, spent by rolling resistance
+  std::set<std::uint8_t> levels;              // of its contacts
+};
+// Once it is squeezed by so much, m, and rolls.
+Rolled roll_between_unlike_plates(dem::Setup setup, double overlap) {
   omp_set_num_threads(1);
-  dem::Setup setup = with_levels(support::glass_setup());
   setup.keep_ledger = true;
   setup.materials.push_back(setup.materials[0]);
   setup.materials[1].young /= 20;
@@ -166,24 +168,46 @@ TEST(Levels, AGrainRolledBetweenUnlikePlatesMakesNoEnergy) {
   const double radius = 0.4625e-3;
   setup.walls = {Wall{"floor", 1, Plane{}, {}}, Wall{"plate", 0, Plane{Vec3::Zero(), -Vec3::UnitZ()}, {}}};
   const auto pose = [&](double x, double gap) -> Vec3 { return Vec3(x, 0, 2 * radius + gap); };
-  setup.walls[1].motion.table = std::make_shared<const PoseTable>(
-      std::vector<PoseRow>{{0, pose(0, 0), {1, 0, 0, 0}}, {2e-4, pose(0.5e-4, -2e-5), {1, 0, 0, 0}}, {2e-3, pose(5e-4, -2e-5), {1, 0, 0, 0}}});
+  setup.walls[1].motion.table = std::make_shared<const PoseTable>(std::vector<PoseRow>{
+      {0, pose(0, 0), {1, 0, 0, 0}}, {2e-4, pose(0.5e-4, -overlap), {1, 0, 0, 0}}, {2e-3, pose(5e-4, -overlap), {1, 0, 0, 0}}});
   Particles grain;
   grain.add(1, 0, radius, Vec3(0, 0, radius));
   Simulation sim(setup, fresh(grain));
-  sim.advance(8000);  // it is squeezed, and rolls
-  std::set<std::uint8_t> seen;
+  const auto steps = [&](double time) { return std::uint64_t(std::llround(time / setup.step)); };
+  sim.advance(steps(4e-4));
+  Rolled result;
   const Ledger before = sim.ledger();
   for (int k = 0; k < 100; ++k) {
-    sim.advance(256);
-    for (const State::WallPair& contact : sim.state().wall_pairs) seen.insert(contact.level);
+    sim.advance(steps(1.28e-5));
+    for (const State::WallPair& contact : sim.state().wall_pairs) result.levels.insert(contact.level);
   }
   const Ledger after = sim.ledger();
-  EXPECT_GT(seen.size(), 1U) << "both contacts at the same level show nothing";
-  const double work = after.work() - before.work(), made = after.spent.time_stepping - before.spent.time_stepping;
-  EXPECT_GT(work, 0);
-  EXPECT_GT(after.spent.rolling - before.spent.rolling, 0.5 * work);
-  EXPECT_NEAR(made, 0, 0.001 * work);
+  result.work = after.work() - before.work();
+  result.made = after.spent.time_stepping - before.spent.time_stepping;
+  result.resistance = after.spent.rolling - before.spent.rolling;
+  return result;
+}
+
+// What the time steps make must be small against the work that rolling takes; with springs stretched by the last velocity and not the mean it
+// was 1.4 % of it here, and more than all of it in a jam of some hundred newtons.
+TEST(Levels, AGrainRolledBetweenUnlikePlatesMakesNoEnergy) {
+  const Rolled own = roll_between_unlike_plates(with_levels(support::glass_setup()), 2e-5);
+  EXPECT_GT(own.levels.size(), 1U) << "both contacts at the same level show nothing";
+  EXPECT_GT(own.work, 0);
+  EXPECT_GT(own.resistance, 0.5 * own.work);
+  EXPECT_NEAR(own.made, 0, 0.001 * own.work);
+}
+
+// A constant torque may take only a share of the spin, here far less than it would: the share of the run's step, though one of the contacts
+// steps at half that rate. By the contact's own step it would resist with three quarters.
+TEST(Levels, AGrainIsResistedFromRollingAsAtEveryStep) {
+  const dem::Setup setup = support::glass_setup(1e-7);
+  const Rolled every = roll_between_unlike_plates(setup, 4e-5), own = roll_between_unlike_plates(with_levels(setup), 4e-5);
+  EXPECT_EQ(own.levels, (std::set<std::uint8_t>{0, 1}));
+  EXPECT_NEAR(own.resistance, every.resistance, 0.005 * every.resistance);  // as impacts are
+  EXPECT_NEAR(own.work, every.work, 0.005 * every.work);
+  const Rolled finer = roll_between_unlike_plates(support::glass_setup(5e-8), 4e-5);
+  EXPECT_NEAR(finer.resistance, 2 * every.resistance, 0.1 * every.resistance) << "else the share does not limit it";
 }
 
 TEST(Levels, FreeGrainsKeepTheirMomentum) {
