@@ -265,13 +265,14 @@ Command add_compare(CLI::App& app, Options& o) {
   CompareOptions& m = o.compare;
   c.add_option("RUN", m.runs, "folders with results, or their jam.h5; the first is compared with each of the others")->required()->type_name("");
   c.add_option("--against", m.against, "a second group of such runs: compared as groups, seeds of one condition with seeds of another")->type_name("RUN ...");
+  c.add_flag("--paired", m.paired, "the first of the one group began from the same bed as the first of the other, and so on: what differs between beds does not hide what differs between the groups");
   const std::map<std::string, CompareBy> ways{{"step", CompareBy::step}, {"frame", CompareBy::frame}};
   c.add_option("--by", m.by, "jams of every step (default), or those of frames, with rates corrected for what frames miss")
       ->transform(one_of(ways))
       ->type_name("step|frame");
   c.add_option("--stream", m.stream, "of every step: any grain's jams as one (default), each grain's, or each site's")->type_name("global|particle|site");
   c.add_flag("--json", m.json, "for machines");
-  c.footer("Examples:\n  jamscope compare down up\n  jamscope compare seed1 seed2 seed3 --stream particle\n  jamscope compare glass_1 glass_2 glass_3 glass_4 --against soft_1 soft_2 soft_3 soft_4");
+  c.footer("Examples:\n  jamscope compare down up\n  jamscope compare seed1 seed2 seed3 --stream particle\n  jamscope compare glass_1 glass_2 glass_3 glass_4 --against soft_1 soft_2 soft_3 soft_4\n  jamscope compare coarse_* --against fine_* --paired");
   return [&o] { return compare(o.compare); };
 }
 

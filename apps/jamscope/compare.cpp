@@ -223,7 +223,7 @@ struct GroupRow {
   std::string name, unit;
   double first, second, distance, p, seen;  // distance of the distributions, NaN where it is a share
 };
-std::vector<GroupRow> compare_groups(const std::vector<Run>& first, const std::vector<Run>& second) {
+std::vector<GroupRow> compare_groups(const std::vector<Run>& first, const std::vector<Run>& second, jam::Dealt dealt) {
   std::vector<GroupRow> rows;
   for (const SharedQuantity& q : shared_quantities) {
     const auto shares = [&](const std::vector<Run>& runs) {
@@ -237,7 +237,7 @@ std::vector<GroupRow> compare_groups(const std::vector<Run>& first, const std::v
       return q.scale * amount / over;
     };
     const std::vector<jam::RunShare> a = shares(first), b = shares(second);
-    rows.push_back({q.name, q.unit, value(a), value(b), nan, jam::same_share(a, b).p, jam::seen_factor(a, b)});
+    rows.push_back({q.name, q.unit, value(a), value(b), nan, jam::same_share(a, b, dealt).p, jam::seen_factor(a, b, dealt)});
   }
   for (const DistributedQuantity& q : distributed_quantities) {
     const auto values = [&](const std::vector<Run>& runs) {
@@ -251,13 +251,13 @@ std::vector<GroupRow> compare_groups(const std::vector<Run>& first, const std::v
       return q.scale * median_of(pooled);
     };
     const std::vector<std::vector<double>> a = values(first), b = values(second);
-    const jam::GroupTest test = jam::same_distribution(a, b);
-    rows.push_back({q.name, q.unit, median(a), median(b), test.difference, test.p, jam::seen_factor(a, b)});
+    const jam::GroupTest test = jam::same_distribution(a, b, dealt);
+    rows.push_back({q.name, q.unit, median(a), median(b), test.difference, test.p, jam::seen_factor(a, b, dealt)});
   }
   return rows;
 }
 
-std::string group_text(const std::vector<Run>& first, const std::vector<Run>& second) {
+std::string group_text(const std::vector<Run>& first, const std::vector<Run>& second, jam::Dealt dealt) {
   std::string out;
   for (const auto* group : {&first, &second}) {
     std::size_t jams = 0;
@@ -268,24 +268,28 @@ std::string group_text(const std::vector<Run>& first, const std::vector<Run>& se
   }
   const auto number = [](double x) { return std::isnan(x) ? std::string("-") : fmt::format("{:.4g}", x); };
   out += fmt::format("\n{:<45}  {:>9}  {:>9}  {:>8}  {:>7}  {:>11}\n", "", "first", "second", "distance", "p", "seen from x");
-  for (const GroupRow& row : compare_groups(first, second))
+  for (const GroupRow& row : compare_groups(first, second, dealt))
     out += fmt::format("{:<45}  {:>9}  {:>9}  {:>8}  {:>7.3g}  {:>11}\n", row.name + ", " + row.unit, number(row.first), number(row.second), number(row.distance),
                        row.p, number(row.seen));
-  out += "\np: so often runs dealt out to the groups at random differ by as much, in the value or by the distance of the distributions (Kolmogorov, Smirnov).\n"
-         "seen from x: were all values of one group larger by this factor, 80 of 100 such comparisons would give p < 0.05.\n";
-  if (first.size() < 4 || second.size() < 4)
+  const bool paired = dealt == jam::Dealt::within_pairs;
+  out += fmt::format("\np: so often {} differ by as much, in the value or by the distance of the distributions (Kolmogorov, Smirnov).\n"
+                     "seen from x: were all values of one group larger by this factor, 80 of 100 such comparisons would give p < 0.05.\n",
+                     paired ? "groups in which the runs of pairs, the first with the first and so on, are swapped at random" : "runs dealt out to the groups at random");
+  if (paired && first.size() < 6)
+    out += fmt::format("{} pairs are few: with six p can be as low as 0.031.\n", first.size());
+  else if (!paired && (first.size() < 4 || second.size() < 4))
     out += fmt::format("{} runs against {} are few: with four against four p can be as low as 0.029.\n", first.size(), second.size());
   return out;
 }
 
-std::string group_json(const std::vector<Run>& first, const std::vector<Run>& second) {
-  Json json;
+std::string group_json(const std::vector<Run>& first, const std::vector<Run>& second, jam::Dealt dealt) {
+  Json json{{"paired", dealt == jam::Dealt::within_pairs}};
   for (const auto* group : {&first, &second}) {
     Json runs = Json::array();
     for (const Run& run : *group) runs.push_back({{"run", run.name}, {"record_s", run.record}, {"jams", run.began}});
     json["groups"].push_back(runs);
   }
-  for (const GroupRow& row : compare_groups(first, second))
+  for (const GroupRow& row : compare_groups(first, second, dealt))
     json["quantities"][row.name] = {{"unit", row.unit},          {"first", or_null(row.first)}, {"second", or_null(row.second)}, {"distance", or_null(row.distance)},
                                     {"p", or_null(row.p)}, {"seen_factor", or_null(row.seen)}};
   return json.dump(2) + "\n";
@@ -302,10 +306,14 @@ std::vector<Run> read_runs(const std::vector<std::string>& paths, const CompareO
 int compare(const CompareOptions& options) {
   if (std::find(std::begin(jam::jam_stream_names), std::end(jam::jam_stream_names), options.stream) == std::end(jam::jam_stream_names))
     throw UsageError(fmt::format("--stream {}: expected global, particle or site", options.stream));
+  if (options.paired && options.runs.size() != options.against.size())
+    throw UsageError(fmt::format("--paired: {} runs against {}, expected as many, each at the place of the run with the same bed", options.runs.size(),
+                                 options.against.size()));
   const std::vector<Run> runs = read_runs(options.runs, options);
   if (!options.against.empty()) {
     const std::vector<Run> against = read_runs(options.against, options);
-    fmt::print("{}", options.json ? group_json(runs, against) : group_text(runs, against));
+    const jam::Dealt dealt = options.paired ? jam::Dealt::within_pairs : jam::Dealt::among_all;
+    fmt::print("{}", options.json ? group_json(runs, against, dealt) : group_text(runs, against, dealt));
     return 0;
   }
   std::vector<double> rates;

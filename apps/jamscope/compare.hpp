@@ -11,6 +11,7 @@ enum class CompareBy { step, frame };
 struct CompareOptions {
   std::vector<std::string> runs;  // folders that hold a jam.h5, or such files
   std::vector<std::string> against;  // likewise: a second group, compared with `runs` as one; none: run by run
+  bool paired = false;  // run k of `against` began from the bed that run k of `runs` began from
   CompareBy by = CompareBy::step;
   std::string stream = "global";  // of every step: global, particle or site
   bool json = false;

@@ -13,7 +13,8 @@ namespace {
 std::string overlaps_text(const dem::Overlaps& o) {
   std::string text = fmt::format("largest overlap {:.2g} R", o.largest);
   if (o.squeezed > 0)
-    text += fmt::format(" ({} squeezed between walls: {:.2g} R)", o.squeezed == 1 ? "1 grain" : fmt::format("{} grains", o.squeezed), o.largest_squeezed);
+    text += fmt::format(" ({} squeezed between walls: {:.2g} R)", o.squeezed == 1 ? "1 grain" : fmt::format("{} grains", o.squeezed),
+                        o.largest_squeezed);
   return text;
 }
 

@@ -24,7 +24,7 @@ std::size_t ways(std::size_t a, std::size_t b, std::size_t most) {
 }
 
 // As they are first; then all others, or, where they are more than `most`, random ones.
-std::vector<Dealing> dealings(std::size_t a, std::size_t b, std::size_t most) {
+std::vector<Dealing> dealings_among_all(std::size_t a, std::size_t b, std::size_t most) {
   Dealing dealing(a);
   std::iota(dealing.begin(), dealing.end(), 0U);
   std::vector<Dealing> all{dealing};
@@ -48,6 +48,26 @@ std::vector<Dealing> dealings(std::size_t a, std::size_t b, std::size_t most) {
   }
 }
 
+// Likewise of pairs: the first group has run k or run n + k.
+std::vector<Dealing> dealings_within_pairs(std::size_t n, std::size_t most) {
+  const bool all_of_them = n < 64 && (std::uint64_t{1} << n) <= most;
+  std::mt19937_64 random(1);
+  std::vector<Dealing> all;
+  while (all.size() < (all_of_them ? std::size_t{1} << n : most)) {
+    std::uint64_t swapped = all.size();  // bit k % 64: pair k is
+    Dealing& dealing = all.emplace_back(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!all_of_them && all.size() > 1 && k % 64 == 0) swapped = random();
+      dealing[k] = std::uint32_t((swapped >> k % 64 & 1) != 0 ? n + k : k);
+    }
+  }
+  return all;
+}
+
+std::vector<Dealing> dealings(std::size_t a, std::size_t b, std::size_t most, Dealt dealt) {
+  return dealt == Dealt::within_pairs ? dealings_within_pairs(a, most) : dealings_among_all(a, b, most);
+}
+
 // A run with its values times a factor.
 struct Member {
   std::size_t run;
@@ -59,8 +79,9 @@ using Contributions = std::vector<std::vector<double>>;
 template <class Contribute, class Difference>
 class Comparison {
  public:
-  Comparison(std::size_t a, std::size_t b, Contribute contribute, Difference difference)
-      : a_(a), b_(b), dealings_(dealings(a, b, 10000)), trial_dealings_(dealings(a, b, 1000)), contribute_(contribute), difference_(difference) {}
+  Comparison(std::size_t a, std::size_t b, Dealt dealt, Contribute contribute, Difference difference)
+      : a_(a), b_(b), dealt_(dealt), dealings_(dealings(a, b, 10000, dealt)), trial_dealings_(dealings(a, b, 1000, dealt)),
+        contribute_(contribute), difference_(difference) {}
 
   GroupTest test() const {
     std::vector<Member> members;
@@ -110,13 +131,22 @@ class Comparison {
     std::size_t seen = 0;
     std::vector<Member> members(a_ + b_);
     for (std::size_t trial = 0; trial < trials; ++trial) {
-      for (std::size_t m = 0; m < members.size(); ++m) members[m] = {random() % members.size(), m < a_ ? 1 : factor};
+      if (dealt_ == Dealt::within_pairs) {
+        for (std::size_t m = 0; m < a_; ++m) {
+          const std::size_t pair = random() % a_, around = random() % 2;
+          members[m] = {pair + around * a_, 1};
+          members[a_ + m] = {pair + (1 - around) * a_, factor};
+        }
+      } else {
+        for (std::size_t m = 0; m < members.size(); ++m) members[m] = {random() % members.size(), m < a_ ? 1 : factor};
+      }
       seen += judge(members, trial_dealings_).p < 0.05;
     }
     return double(seen) / double(trials);
   }
 
   std::size_t a_, b_;
+  Dealt dealt_;
   std::vector<Dealing> dealings_, trial_dealings_;
   Contribute contribute_;
   Difference difference_;
@@ -130,18 +160,18 @@ std::vector<T> together(std::span<const T> a, std::span<const T> b) {
   return all;
 }
 
-auto of_shares(std::span<const RunShare> a, std::span<const RunShare> b) {
+auto of_shares(std::span<const RunShare> a, std::span<const RunShare> b, Dealt dealt) {
   const auto contribute = [runs = together(a, b)](std::span<const Member> members) {
     Contributions rows;
     for (const Member& m : members) rows.push_back({m.factor * runs[m.run].amount, runs[m.run].over});
     return rows;
   };
   const auto difference = [](const std::vector<double>& in_a, const std::vector<double>& in_b) { return in_b[0] / in_b[1] - in_a[0] / in_a[1]; };
-  return Comparison(a.size(), b.size(), contribute, difference);
+  return Comparison(a.size(), b.size(), dealt, contribute, difference);
 }
 
 using Values = std::vector<double>;
-auto of_distributions(std::span<const Values> a, std::span<const Values> b) {
+auto of_distributions(std::span<const Values> a, std::span<const Values> b, Dealt dealt) {
   std::vector<Values> sorted = together(a, b);
   for (Values& values : sorted) std::sort(values.begin(), values.end());
   // Numbers of values up to each of some; then of all.
@@ -173,7 +203,7 @@ auto of_distributions(std::span<const Values> a, std::span<const Values> b) {
     for (std::size_t k = 0; k + 1 < in_a.size(); ++k) largest = std::max(largest, std::abs(in_a[k] / in_a.back() - in_b[k] / in_b.back()));
     return largest;
   };
-  return Comparison(a.size(), b.size(), contribute, difference);
+  return Comparison(a.size(), b.size(), dealt, contribute, difference);
 }
 
 bool nothing_in(std::span<const Values> runs) {
@@ -182,16 +212,16 @@ bool nothing_in(std::span<const Values> runs) {
 
 }  // namespace
 
-GroupTest same_share(std::span<const RunShare> a, std::span<const RunShare> b) {
-  return a.empty() || b.empty() ? GroupTest{nan, 1} : of_shares(a, b).test();
+GroupTest same_share(std::span<const RunShare> a, std::span<const RunShare> b, Dealt dealt) {
+  return a.empty() || b.empty() ? GroupTest{nan, 1} : of_shares(a, b, dealt).test();
 }
 
-GroupTest same_distribution(std::span<const Values> a, std::span<const Values> b) {
-  return nothing_in(a) || nothing_in(b) ? GroupTest{nan, 1} : of_distributions(a, b).test();
+GroupTest same_distribution(std::span<const Values> a, std::span<const Values> b, Dealt dealt) {
+  return nothing_in(a) || nothing_in(b) ? GroupTest{nan, 1} : of_distributions(a, b, dealt).test();
 }
 
-double seen_factor(std::span<const RunShare> a, std::span<const RunShare> b) { return of_shares(a, b).seen_factor(); }
+double seen_factor(std::span<const RunShare> a, std::span<const RunShare> b, Dealt dealt) { return of_shares(a, b, dealt).seen_factor(); }
 
-double seen_factor(std::span<const Values> a, std::span<const Values> b) { return of_distributions(a, b).seen_factor(); }
+double seen_factor(std::span<const Values> a, std::span<const Values> b, Dealt dealt) { return of_distributions(a, b, dealt).seen_factor(); }
 
 }  // namespace jam

@@ -15,24 +15,29 @@ struct GroupTest {
   double p = 1;
 };
 
+// How runs are dealt out. Where run k of a and run k of b have their start in common, the same bed, what differs between beds is left out of
+// the comparison: only the two runs of a pair are swapped (Fisher, The Design of Experiments, 1935, section 21). Condition: then the groups
+// are of one size.
+enum class Dealt { among_all, within_pairs };
+
 // How much of something in how much of a run: jams in its record, s; or a quantity of a run as a whole, over 1.
 struct RunShare {
   double amount = 0, over = 1;
 };
 
 // By sum of amounts over sum of what they are over: `difference` is that of b less that of a. NaN and p = 1 where a group is empty.
-GroupTest same_share(std::span<const RunShare> a, std::span<const RunShare> b);
+GroupTest same_share(std::span<const RunShare> a, std::span<const RunShare> b, Dealt dealt = Dealt::among_all);
 
 // By the largest distance of the distributions of all values of the runs of a group, Kolmogorov's and Smirnov's: `difference`, 0 to 1. At all
 // values that occur where they are at most 256, else at so many of their quantiles. Runs may have any number of values; NaN and p = 1
 // where a group has none.
-GroupTest same_distribution(std::span<const std::vector<double>> a, std::span<const std::vector<double>> b);
+GroupTest same_distribution(std::span<const std::vector<double>> a, std::span<const std::vector<double>> b, Dealt dealt = Dealt::among_all);
 
 // The power of these tests: the factor by which all values (amounts) of one group would have to be larger for 80 of 100 such
-// comparisons to give p < 0.05, if runs scatter as these do: runs of both groups together are drawn anew, 200 times, with a fixed seed;
-// where the groups do differ that is more than within each. NaN where not
-// even a factor of 100 would do: always where there are too few runs, fewer than four against four.
-double seen_factor(std::span<const RunShare> a, std::span<const RunShare> b);
-double seen_factor(std::span<const std::vector<double>> a, std::span<const std::vector<double>> b);
+// comparisons to give p < 0.05, if runs scatter as these do: runs of both groups together (or pairs, either way around) are drawn anew, 200
+// times, with a fixed seed; where the groups do differ that is more than within each. NaN where not even a factor of 100 would do: always
+// where there are too few runs, fewer than four against four or than six pairs.
+double seen_factor(std::span<const RunShare> a, std::span<const RunShare> b, Dealt dealt = Dealt::among_all);
+double seen_factor(std::span<const std::vector<double>> a, std::span<const std::vector<double>> b, Dealt dealt = Dealt::among_all);
 
 }  // namespace jam

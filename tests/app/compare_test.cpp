@@ -93,6 +93,17 @@ TEST(Compare, JudgesGroupsOfRunsBySeeds) {
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("rate of jams, 1/s"));
   EXPECT_THAT(text.out, HasSubstr("4 runs against 1 are few"));
+
+  // In pairs: of 16 ways to swap, this one and its mirror image are the farthest apart.
+  const std::string pairs = fmt::format("compare {} --against {} --paired", fmt::join(first, " "), fmt::join(second, " "));
+  const Outcome paired = run_program(pairs + " --json");
+  ASSERT_EQ(paired.code, 0) << paired.err;
+  EXPECT_DOUBLE_EQ(nlohmann::json::parse(paired.out)["quantities"]["rate of jams"]["p"].get<double>(), 2.0 / 16);
+  EXPECT_THAT(run_program(pairs).out, HasSubstr("4 pairs are few"));
+  const Outcome odd = run_program(fmt::format("compare {} --against {} --paired", fmt::join(first, " "), second[0]));
+  EXPECT_EQ(odd.code, 2);
+  EXPECT_THAT(odd.err, HasSubstr("4 runs against 1"));
+  EXPECT_EQ(run_program("compare " + first[0] + " --paired").code, 2);
 }
 
 TEST(Compare, SaysWhatIsWrong) {

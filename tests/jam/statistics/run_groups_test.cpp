@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <random>
@@ -109,6 +110,45 @@ TEST(RunGroups, SayWhatTheyWouldHaveSeen) {
   int seen = 0;
   for (int k = 0; k < 200; ++k) seen += same_share(draw(1), draw(factor)).p < 0.05;
   EXPECT_NEAR(seen / 200.0, 0.8, 0.12);
+}
+
+// Differences 1, 2 and -4 of three pairs: of the eight ways to swap, as far as -1 are all but none: +-7, +-5, +-3, +-1.
+TEST(RunGroups, InPairsAreJudgedByAllWaysToSwap) {
+  const std::vector<RunShare> a{{10}, {100}, {1000}}, b{{11}, {102}, {996}}, c{{11}, {102}, {1004}};
+  EXPECT_NEAR(same_share(a, b, Dealt::within_pairs).difference, -1.0 / 3, 1e-12);
+  EXPECT_DOUBLE_EQ(same_share(a, b, Dealt::within_pairs).p, 1);
+  EXPECT_DOUBLE_EQ(same_share(a, c, Dealt::within_pairs).p, 2.0 / 8);
+  const Runs low{{1, 2}, {11, 12}, {21, 22}}, high{{3, 4}, {13, 14}, {23, 24}};
+  EXPECT_DOUBLE_EQ(same_distribution(low, high, Dealt::within_pairs).difference, 1.0 / 3);
+  EXPECT_DOUBLE_EQ(same_distribution(low, high, Dealt::within_pairs).p, 1) << "wherever the pairs do not overlap the distance is the same";
+}
+
+// Beds differ by a factor of two, the two runs of a bed by a tenth: pairs see a factor that groups do not. More than 64 pairs are dealt out
+// at random like fewer.
+TEST(RunGroups, InPairsLeaveOutWhatBedsDifferBy) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> scatter;
+  const auto draw = [&](std::size_t pairs, double factor) {
+    std::array<std::vector<RunShare>, 2> groups;
+    for (std::size_t k = 0; k < pairs; ++k) {
+      const double bed = std::exp(0.7 * scatter(random));
+      groups[0].push_back({bed * std::exp(0.07 * scatter(random))});
+      groups[1].push_back({factor * bed * std::exp(0.07 * scatter(random))});
+    }
+    return groups;
+  };
+  const auto [a, b] = draw(20, 1.2);
+  EXPECT_LT(same_share(a, b, Dealt::within_pairs).p, 0.01);
+  EXPECT_GT(same_share(a, b).p, 0.05);
+  EXPECT_LT(seen_factor(a, b, Dealt::within_pairs), 1.2);
+  EXPECT_GT(seen_factor(a, b), 1.5);
+  int differ = 0;
+  constexpr int comparisons = 300;
+  for (int k = 0; k < comparisons; ++k) {
+    const auto [first, second] = draw(k % 2 == 0 ? 10 : 70, 1);
+    differ += same_share(first, second, Dealt::within_pairs).p < 0.05;
+  }
+  EXPECT_NEAR(differ, 15, 12);  // three standard deviations
 }
 
 TEST(RunGroups, TooFewToTell) {
