@@ -264,8 +264,8 @@ Command add_compare(CLI::App& app, Options& o) {
   CLI::App& c = *app.add_subcommand("compare", "jams of several runs side by side, and whether they differ");
   CompareOptions& m = o.compare;
   c.add_option("RUN", m.runs, "folders with results, or their jam.h5; the first is compared with each of the others")->required()->type_name("");
-  c.add_option("--against", m.against, "a second group of such runs: compared as groups, seeds of one condition with seeds of another")->type_name("RUN ...");
-  c.add_flag("--paired", m.paired, "the first of the one group began from the same bed as the first of the other, and so on: what differs between beds does not hide what differs between the groups");
+  auto* const against = c.add_option("--against", m.against, "a second group of such runs: compared as groups, seeds of one condition with seeds of another")->type_name("RUN ...");
+  c.add_flag("--paired", m.paired, "the first of each group began from the same bed, and so on: what beds differ by is left out")->needs(against);
   const std::map<std::string, CompareBy> ways{{"step", CompareBy::step}, {"frame", CompareBy::frame}};
   c.add_option("--by", m.by, "jams of every step (default), or those of frames, with rates corrected for what frames miss")
       ->transform(one_of(ways))
