@@ -72,29 +72,26 @@ struct ChunkOutput {
   ForceRow& of(std::uint32_t row) const { return sheet[chunks.place(row)]; }
 };
 
-// Each constant of a table is get(the member, its number in the table). Members are constants of the compiler, and written out:
-// it sees through a table and unrolls a loop too late to keep packs out of memory.
-template <class Get>
-inline void fill_materials(PairConstants<Pack>& c, Get get) {
-  const auto fill = [&]<std::size_t M>(std::integral_constant<std::size_t, M>) {
-    constexpr auto to = material_constants<Pack>[M];
-    constexpr auto from = material_constants<double>[M];
-    c.*to = get(std::integral_constant<decltype(from), from>{}, M);
+// Each constant of a table, the members `to` of the lanes and `from` of one contact, is get(the latter, its number in the table). Members are
+// constants of the compiler, and written out: it sees through a table and unrolls a loop too late to keep packs out of memory.
+template <const auto& to, const auto& from, class Get>
+inline void fill(PairConstants<Pack>& c, Get get) {
+  const auto fill_one = [&]<std::size_t M>(std::integral_constant<std::size_t, M>) {
+    constexpr auto lanes = to[M];
+    constexpr auto one = from[M];
+    c.*lanes = get(std::integral_constant<decltype(one), one>{}, M);
   };
   [&]<std::size_t... M>(std::index_sequence<M...>) {
-    (fill(std::integral_constant<std::size_t, M>{}), ...);
-  }(std::make_index_sequence<material_constants<Pack>.size()>{});
+    (fill_one(std::integral_constant<std::size_t, M>{}), ...);
+  }(std::make_index_sequence<to.size()>{});
+}
+template <class Get>
+inline void fill_materials(PairConstants<Pack>& c, Get get) {
+  fill<material_constants<Pack>, material_constants<double>>(c, get);
 }
 template <class Get>
 inline void fill_contacts(PairConstants<Pack>& c, Get get) {
-  const auto fill = [&]<std::size_t M>(std::integral_constant<std::size_t, M>) {
-    constexpr auto to = contact_constants<Pack>[M];
-    constexpr auto from = contact_constants<double>[M];
-    c.*to = get(std::integral_constant<decltype(from), from>{}, M);
-  };
-  [&]<std::size_t... M>(std::index_sequence<M...>) {
-    (fill(std::integral_constant<std::size_t, M>{}), ...);
-  }(std::make_index_sequence<constants_per_contact>{});
+  fill<contact_constants<Pack>, contact_constants<double>>(c, get);
 }
 // All but those that follow from the rows of the grains.
 inline void fill_constants(PairConstants<Pack>& c, const MaterialTable& materials, const PairContacts& pairs, std::size_t number,
